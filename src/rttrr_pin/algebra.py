@@ -1,0 +1,121 @@
+"""Three-vectors and 3x3 matrices over scalars of any kind.
+
+A scalar is anything with +, - and *: a float, a NumPy array (then a batch lives inside the scalar), a
+(value, bound) pair, a ball, a symbol. The integer 0 serves as the zero of every kind.
+
+NumPy object arrays would not do: an array-valued scalar broadcasts wrongly in them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any, TypeAlias, overload
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+Scalar: TypeAlias = Any
+"""Anything with +, - and *; the algebra never asks what it is."""
+
+Lift: TypeAlias = Callable[[float], Scalar]
+"""Turns a float of the model into a scalar."""
+
+
+@dataclass(slots=True, eq=False)
+class Vector:
+    """A vector (x, y, z) in some frame."""
+
+    x: Scalar
+    y: Scalar
+    z: Scalar
+
+    @classmethod
+    def of(cls, values: ArrayLike, lift: Lift = float) -> Vector:
+        """The vector of three numbers, each lifted to a scalar."""
+        x, y, z = np.asarray(values, dtype=float)
+        return cls(lift(float(x)), lift(float(y)), lift(float(z)))
+
+    def __iter__(self) -> Iterator[Scalar]:
+        return iter((self.x, self.y, self.z))
+
+    def __add__(self, other: Vector) -> Vector:
+        return Vector(self.x + other.x, self.y + other.y, self.z + other.z)
+
+    def __sub__(self, other: Vector) -> Vector:
+        return Vector(self.x - other.x, self.y - other.y, self.z - other.z)
+
+    def __neg__(self) -> Vector:
+        return Vector(-self.x, -self.y, -self.z)
+
+    def __mul__(self, s: Scalar) -> Vector:
+        return Vector(self.x * s, self.y * s, self.z * s)
+
+    def cross(self, other: Vector) -> Vector:
+        """The vector product self x other."""
+        return Vector(
+            self.y * other.z - self.z * other.y,
+            self.z * other.x - self.x * other.z,
+            self.x * other.y - self.y * other.x,
+        )
+
+    def dot(self, other: Vector) -> Scalar:
+        """The scalar product."""
+        return self.x * other.x + self.y * other.y + self.z * other.z
+
+
+@dataclass(slots=True, eq=False)
+class Matrix:
+    """A 3x3 matrix, by its rows."""
+
+    rows: tuple[Vector, Vector, Vector]
+
+    @classmethod
+    def of(cls, values: ArrayLike, lift: Lift = float) -> Matrix:
+        """The matrix of 3x3 numbers, each lifted to a scalar."""
+        a, b, c = np.asarray(values, dtype=float)
+        return cls((Vector.of(a, lift), Vector.of(b, lift), Vector.of(c, lift)))
+
+    @classmethod
+    def outer(cls, a: Vector, b: Vector) -> Matrix:
+        """The dyadic product a b^T."""
+        return cls((b * a.x, b * a.y, b * a.z))
+
+    @classmethod
+    def skew(cls, a: Vector) -> Matrix:
+        """The matrix [a]x with [a]x b = a x b."""
+        return cls((Vector(0, -a.z, a.y), Vector(a.z, 0, -a.x), Vector(-a.y, a.x, 0)))
+
+    @property
+    def T(self) -> Matrix:
+        """The transpose; for a rotation, its inverse."""
+        a, b, c = self.rows
+        return Matrix((Vector(a.x, b.x, c.x), Vector(a.y, b.y, c.y), Vector(a.z, b.z, c.z)))
+
+    def __add__(self, other: Matrix) -> Matrix:
+        a, b, c = (mine + theirs for mine, theirs in zip(self.rows, other.rows, strict=True))
+        return Matrix((a, b, c))
+
+    def __sub__(self, other: Matrix) -> Matrix:
+        a, b, c = (mine - theirs for mine, theirs in zip(self.rows, other.rows, strict=True))
+        return Matrix((a, b, c))
+
+    def __mul__(self, s: Scalar) -> Matrix:
+        a, b, c = self.rows
+        return Matrix((a * s, b * s, c * s))
+
+    @overload
+    def __matmul__(self, other: Vector) -> Vector: ...
+    @overload
+    def __matmul__(self, other: Matrix) -> Matrix: ...
+    def __matmul__(self, other: Vector | Matrix) -> Vector | Matrix:
+        """The product with a vector or a matrix."""
+        if isinstance(other, Vector):
+            return Vector(*(row.dot(other) for row in self.rows))
+        columns = other.T.rows
+        a, b, c = (Vector(*(row.dot(column) for column in columns)) for row in self.rows)
+        return Matrix((a, b, c))
+
+
+ZERO = Vector(0, 0, 0)
+IDENTITY = Matrix((Vector(1, 0, 0), Vector(0, 1, 0), Vector(0, 0, 1)))

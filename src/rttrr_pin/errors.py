@@ -1,0 +1,130 @@
+"""What can go wrong with a user's input, as types.
+
+Every message says what is wrong, what was got, what was wanted and how to mend it; the same facts are attributes.
+A disagreement between two programs is not an error: it is a result, and `validate` returns it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+
+class RttrrError(Exception):
+    """The base of every error that this package raises on purpose."""
+
+
+class InputError(RttrrError, ValueError):
+    """A value that was passed cannot be used."""
+
+
+class ShapeError(InputError):
+    """An array has the wrong shape.
+
+    Attributes:
+        name: the argument, such as `"q"`.
+        got: its shape.
+        wanted: the shape that was expected, in words.
+    """
+
+    def __init__(self, message: str, *, name: str, got: tuple[int, ...], wanted: str) -> None:
+        super().__init__(message)
+        self.name, self.got, self.wanted = name, got, wanted
+
+
+class NumberError(InputError):
+    """A value is no finite real number that float64 can hold (NaN, inf, complex, text, too large, ...).
+
+    Attributes:
+        name: the argument, such as `"q"`.
+        joint: the joint that the value belongs to; None where the argument has none.
+        index: the place of the first bad value in the array; None where the whole array is of a wrong kind.
+        value: the bad value, or the kind of the array.
+    """
+
+    def __init__(
+        self,
+        message: str,
+        *,
+        name: str,
+        joint: str | None = None,
+        index: tuple[int, ...] | None = None,
+        value: object = None,
+    ) -> None:
+        super().__init__(message)
+        self.name, self.joint, self.index, self.value = name, joint, index, value
+
+
+class UnknownNameError(InputError):
+    """A joint, link, robot, ... of that name does not exist.
+
+    Attributes:
+        kind: what was looked for, such as `"joint"`.
+        got: the name.
+        known: the names that would have worked.
+    """
+
+    def __init__(self, kind: str, got: object, known: Iterable[str], fix: str = "") -> None:
+        self.kind, self.got, self.known = kind, got, tuple(known)
+        super().__init__(f"no {kind} is called {got!r}: {nearest(got, self.known)}{'; ' + fix if fix else ''}")
+
+
+class MissingJointError(InputError):
+    """A dict of joint values leaves joints out.
+
+    Attributes:
+        name: the argument, such as `"q"`.
+        missing: the joints left out.
+    """
+
+    def __init__(self, name: str, missing: Iterable[str]) -> None:
+        self.name, self.missing = name, tuple(missing)
+        super().__init__(
+            f"{name} lacks {', '.join(self.missing)}: a dict must have one entry for each joint; "
+            f"add {', '.join(f'{joint!r}: 0.0' for joint in self.missing)} if they are at rest"
+        )
+
+
+class UrdfError(RttrrError):
+    """A URDF cannot be used.
+
+    Attributes:
+        source: the file's name, or `"<string>"`.
+        line: the line of the element at fault; None where there is none.
+        element: the element at fault, such as `link "link_2"`.
+    """
+
+    def __init__(self, message: str, *, source: str, line: int | None = None, element: str = "") -> None:
+        self.source, self.line, self.element = source, line, element
+        where = source if line is None else f"{source}, line {line}"
+        super().__init__(f"{where}: {element + ': ' if element else ''}{message}")
+
+
+class OracleError(RttrrError):
+    """A library that serves as an oracle is missing, or cannot take this robot."""
+
+
+class ModelMismatchError(OracleError):
+    """The model that an oracle built from the file is not what the file says.
+
+    Attributes:
+        differences: one line for each number that differs, with the link or joint it belongs to.
+    """
+
+    def __init__(self, oracle: str, differences: Iterable[str]) -> None:
+        self.oracle, self.differences = oracle, tuple(differences)
+        shown = "\n  ".join(self.differences[:12])
+        more = f"\n  and {len(self.differences) - 12} more" if len(self.differences) > 12 else ""
+        super().__init__(
+            f"{oracle} built another model than the file describes, so comparing would mislead:\n  {shown}{more}"
+        )
+
+
+def nearest(got: object, known: Iterable[str]) -> str:
+    """The hint that follows an unknown name: the closest names that exist, or all of them where none is close."""
+    names = list(known)
+    close = get_close_matches(str(got), names, n=3, cutoff=0.5)
+    if close:
+        return "did you mean " + " or ".join(close) + "?"
+    shown = ", ".join(names[:12]) + (f", ... ({len(names)} in all)" if len(names) > 12 else "")
+    return f"there are {shown}" if names else "there are none"

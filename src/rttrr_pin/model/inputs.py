@@ -1,0 +1,186 @@
+"""From what a user passes for q, v, a and payloads to float64 arrays, or to an error that names joint and index."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rttrr_pin.errors import MissingJointError, NumberError, ShapeError, UnknownNameError
+
+Array = NDArray[np.float64]
+
+Coordinates: TypeAlias = ArrayLike | Mapping[str, ArrayLike]
+"""An array with the joints on its last axis, or a dict with one entry for each joint."""
+
+EXACT_INTEGER = 2**53
+"""Integers beyond it have no float64 of their own."""
+
+
+def coordinates(name: str, values: Coordinates, joints: Sequence[str]) -> Array:
+    """One of q, v, a as float64.
+
+    Args:
+        name: what it is, for messages.
+        values: an array (..., n), or a dict from joint name to array (...); dict entries broadcast.
+        joints: the names along the last axis.
+
+    Returns:
+        A float64 array (..., n).
+
+    Raises:
+        ShapeError: the last axis has not one value for each joint, or dict entries do not broadcast.
+        NumberError: NaN, inf, complex, text, bool, or an integer that float64 cannot hold.
+        UnknownNameError, MissingJointError: a dict's keys are not the joints' names.
+    """
+    if isinstance(values, Mapping):
+        return _from_dict(name, values, joints)
+    array = real(name, values)
+    if array.ndim == 0 or array.shape[-1] != len(joints):
+        got = "no axis" if array.ndim == 0 else f"{array.shape[-1]} values on its last axis"
+        raise ShapeError(
+            f"{name} has {got}, expected {len(joints)} ({_listed(joints)}): pass one per joint",
+            name=name,
+            got=array.shape,
+            wanted=f"(..., {len(joints)})",
+        )
+    return finite(name, array, joints)
+
+
+def vectors(name: str, values: ArrayLike) -> Array:
+    """A force, a moment or a gravity field, (..., 3), as float64.
+
+    Raises:
+        ShapeError: the last axis has not three values.
+        NumberError: a value is not a finite real number.
+    """
+    array = real(name, values)
+    if array.ndim == 0 or array.shape[-1] != 3:
+        got = "is a single number" if array.ndim == 0 else f"has {array.shape[-1]} values on its last axis"
+        raise ShapeError(
+            f"{name} {got}, expected 3 (x, y, z): pass a vector",
+            name=name,
+            got=array.shape,
+            wanted="(..., 3)",
+        )
+    return finite(name, array)
+
+
+def real(name: str, values: ArrayLike) -> Array:
+    """Anything that is an array of real numbers, as float64 without losing a digit.
+
+    Raises:
+        ShapeError: rows of different lengths.
+        NumberError: a kind of number that float64 cannot hold.
+    """
+    if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
+        raise NumberError(f"{name} has masked entries: fill them, or drop those states", name=name, value="masked")
+    try:
+        array = np.asarray(values)
+    except ValueError as error:
+        raise ShapeError(
+            f"{name} is no rectangular array ({error}): give every row the same length",
+            name=name,
+            got=(),
+            wanted="a rectangular array",
+        ) from error
+    if array.dtype == object:
+        array = _from_objects(name, array)
+    if array.dtype.kind in "iu":
+        _check_integers(name, array)
+    elif array.dtype.kind != "f" or array.dtype.itemsize > 8:
+        kinds = {"b": "bool", "c": "complex", "U": "text", "S": "bytes", "M": "date", "m": "duration"}
+        kind = kinds.get(array.dtype.kind, str(array.dtype))
+        raise NumberError(
+            f"{name} is an array of {kind}, expected real numbers: "
+            f"{'take .real' if kind == 'complex' else 'convert it with .astype(float)'} if that is what you mean",
+            name=name,
+            value=kind,
+        )
+    return np.asarray(array, dtype=np.float64)
+
+
+def finite(name: str, array: Array, labels: Sequence[str] = ()) -> Array:
+    """The array, all of whose values are finite.
+
+    Raises:
+        NumberError: the first NaN or inf, with its index, and its joint where the last axis has labels.
+    """
+    if np.isfinite(array).all():
+        return array
+    bad = np.argwhere(~np.isfinite(array))
+    index = tuple(int(k) for k in bad[0])
+    value = float(array[index])
+    joint = labels[index[-1]] if labels else None
+    more = f" ({len(bad)} such values in all)" if len(bad) > 1 else ""
+    raise NumberError(
+        f"{name}[{', '.join(map(str, index))}]{f', joint {joint!r},' if joint else ''} is {value}, "
+        f"expected a finite number{more}: look where it comes from, or drop that state",
+        name=name,
+        joint=joint,
+        index=index,
+        value=value,
+    )
+
+
+def _from_dict(name: str, values: Mapping[str, ArrayLike], joints: Sequence[str]) -> Array:
+    """A dict from joint name to array, stacked in the order of the joints."""
+    for key in values:
+        if key not in joints:
+            raise UnknownNameError("moving joint", key, joints, f"{name} must have one entry for each")
+    missing = [joint for joint in joints if joint not in values]
+    if missing:
+        raise MissingJointError(name, missing)
+    columns = [finite(f"{name}[{joint!r}]", real(f"{name}[{joint!r}]", values[joint])) for joint in joints]
+    try:
+        return np.stack(np.broadcast_arrays(*columns), axis=-1) if columns else np.zeros((0,))
+    except ValueError:
+        shapes = ", ".join(f"{joint}: {x.shape}" for joint, x in zip(joints, columns, strict=True))
+        raise ShapeError(
+            f"the entries of {name} have shapes that do not broadcast ({shapes}): give all the same shape",
+            name=name,
+            got=(),
+            wanted="shapes that broadcast",
+        ) from None
+
+
+def _from_objects(name: str, array: NDArray[np.object_]) -> Array:
+    """An object array holds what NumPy has no type for: huge integers, fractions, None, nested lists."""
+    for index, value in np.ndenumerate(array):
+        if isinstance(value, int) and not isinstance(value, bool) and abs(value) > EXACT_INTEGER:
+            raise _too_large(name, index, value)
+        if not isinstance(value, (int, float)) or isinstance(value, bool):
+            raise NumberError(
+                f"{name}[{', '.join(map(str, index))}] is {value!r} ({type(value).__name__}), "
+                "expected a real number: convert it with float()",
+                name=name,
+                index=index,
+                value=value,
+            )
+    return array.astype(np.float64)
+
+
+def _check_integers(name: str, array: NDArray[np.integer]) -> None:
+    """Integers that float64 would round are refused."""
+    too_large = (array > EXACT_INTEGER) | (array < -EXACT_INTEGER)
+    if too_large.any():
+        index = tuple(int(k) for k in np.argwhere(too_large)[0])
+        raise _too_large(name, index, int(array[index]))
+
+
+def _too_large(name: str, index: tuple[int, ...], value: int) -> NumberError:
+    digits = str(value) if abs(value) < 10**40 else f"an integer of {len(str(abs(value)))} digits"
+    return NumberError(
+        f"{name}[{', '.join(map(str, index))}] is {digits}, "
+        "which float64 cannot hold exactly: pass a float if rounding it is meant",
+        name=name,
+        index=index,
+        value=value,
+    )
+
+
+def _listed(names: Sequence[str], most: int = 8) -> str:
+    shown = ", ".join(names[:most])
+    return shown + (", ..." if len(names) > most else "") if names else "the robot has no moving joint"

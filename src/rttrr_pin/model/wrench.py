@@ -1,0 +1,96 @@
+"""A force with a moment: what a payload is, and what the recursion returns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rttrr_pin.errors import InputError, UnknownNameError
+
+Array = NDArray[np.float64]
+
+QUANTITIES = ("tau", "F", "N", "f", "n")
+"""What the recursion returns, in the order of reports."""
+
+
+@dataclass(frozen=True, eq=False)
+class Wrench:
+    """What the robot exerts on its surroundings at a link: the paper's payload 6f6, 6n6, equation (8).
+
+    A gripper that carries a weight W presses it *up* with W, so the payload's force points up; it is minus what the
+    surroundings exert on the robot (Pinocchio's fext).
+
+    Attributes:
+        force: f_tool, (..., 3) [N].
+        moment: n_tool about the origin of the link frame, (..., 3) [N m].
+        link: the link whose frame it acts at; None: the tool, that is the robot's only last link.
+        expressed_in: the axes of force and moment: `"link"` (that link's frame) or `"base"`.
+    """
+
+    force: ArrayLike
+    moment: ArrayLike = (0.0, 0.0, 0.0)
+    link: str | None = None
+    expressed_in: Literal["link", "base"] = "link"
+
+    def __post_init__(self) -> None:
+        if self.expressed_in not in ("link", "base"):
+            raise InputError(
+                f"payload expressed_in is {self.expressed_in!r}: expected 'link' (the frame it acts at) or 'base'"
+            )
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class LinkWrenches:
+    """The result of inverse dynamics, joint by joint and link by link.
+
+    Everything but `tau` is expressed in {i}, the frame of the link that it belongs to.
+
+    Attributes:
+        tau: generalised driving forces, the component of n (revolute) or f (prismatic) along the axis,
+            (..., nv) [N m or N].
+        F: net force on the link, mass times acceleration of its centre of mass with gravity as an upward
+            acceleration of the base, (..., links, 3) [N]. Not f, the force that crosses the joint.
+        N: net moment on the link about its centre of mass, (..., links, 3) [N m].
+        f: force that the parent link exerts on the link, (..., links, 3) [N].
+        n: moment that the parent link exerts on the link, about the origin of {i}, (..., links, 3) [N m].
+        links: the names along the links axis.
+        joints: the names along the last axis of tau.
+    """
+
+    tau: Array
+    F: Array
+    N: Array
+    f: Array
+    n: Array
+    links: tuple[str, ...] = ()
+    joints: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, parts: Mapping[str, Array], links: tuple[str, ...], joints: tuple[str, ...]) -> LinkWrenches:
+        """The five quantities by name, with the names along their axes."""
+        return cls(parts["tau"], parts["F"], parts["N"], parts["f"], parts["n"], links, joints)
+
+    def at(self, name: str) -> dict[str, Array]:
+        """What acts at one link, by quantity; for the name of a moving joint, `{"tau": ...}`.
+
+        Raises:
+            UnknownNameError: neither a link nor a moving joint is called so.
+        """
+        if name in self.links:
+            i = self.links.index(name)
+            return {key: getattr(self, key)[..., i, :] for key in ("F", "N", "f", "n")}
+        if name in self.joints:
+            return {"tau": self.tau[..., self.joints.index(name)]}
+        raise UnknownNameError("link or moving joint", name, (*self.links, *self.joints))
+
+    def items(self) -> Iterator[tuple[str, Array]]:
+        """The five quantities with their names, in the order of reports."""
+        return ((key, getattr(self, key)) for key in QUANTITIES)
+
+    def __getitem__(self, index: int | slice) -> LinkWrenches:
+        """The same for one state or some states of a batch."""
+        return LinkWrenches.of({key: value[index] for key, value in self.items()}, self.links, self.joints)

@@ -1,0 +1,80 @@
+"""Other programs that compute the same quantities; one module each, and nothing else imports their libraries.
+
+A new oracle is one module with a class that fulfils `Oracle`, and one line in `ORACLES`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib import import_module
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.arithmetic import Load
+from rttrr_pin.errors import OracleError, UnknownNameError
+from rttrr_pin.model import LinkWrenches, Model
+
+Array = NDArray[np.float64]
+
+ORACLES = {"pinocchio": "rttrr_pin.oracles.pinocchio:PinocchioOracle"}
+"""Where the oracle of each name is."""
+
+
+@dataclass(frozen=True, slots=True)
+class Evaluation:
+    """What an oracle says of a batch.
+
+    Attributes:
+        wrenches: the five quantities, in the frames and signs of `Robot.inverse_dynamics`.
+        rounding: by quantity (F, N, f, n), (N, links): the size of terms that cancel in this oracle's formulas and do
+            not occur in ours, times eps and the few operations they go through. Zero for formulas like ours.
+    """
+
+    wrenches: LinkWrenches
+    rounding: dict[str, Array]
+
+
+class Oracle(Protocol):
+    """A program that computes inverse dynamics by its own means.
+
+    Attributes:
+        name: as in `ORACLES`.
+        version: of the library.
+    """
+
+    name: str
+    version: str
+
+    def __init__(self, model: Model) -> None:
+        """Build the oracle's own model, and compare it with ours.
+
+        Raises:
+            ModelMismatchError: it is not what the file says.
+            OracleError: the oracle cannot take this robot.
+        """
+
+    def evaluate(self, q: Array, v: Array, a: Array, loads: Sequence[Load] = ()) -> Evaluation:
+        """The five quantities of a batch of states, q, v, a: (N, nv) each."""
+
+
+def make_oracle(name: str, model: Model) -> Oracle:
+    """The oracle of that name for this robot.
+
+    Raises:
+        UnknownNameError: there is no such oracle.
+        OracleError: its library is not installed, or cannot take the robot.
+    """
+    if name not in ORACLES:
+        raise UnknownNameError("oracle", name, ORACLES)
+    module, kind = ORACLES[name].split(":")
+    try:
+        oracle = getattr(import_module(module), kind)
+    except ImportError as error:
+        raise OracleError(
+            f"oracle {name!r} needs the package {error.name!r}, which is not installed: install it"
+        ) from error
+    made: Oracle = oracle(model)
+    return made

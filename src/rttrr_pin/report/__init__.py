@@ -1,0 +1,8 @@
+"""Results as people and programs read them: tables for a terminal, JSON for everything else."""
+
+from __future__ import annotations
+
+from rttrr_pin.report.data import as_json, state_data, validation_data, write_whole
+from rttrr_pin.report.text import show_state, show_validation
+
+__all__ = ["as_json", "show_state", "show_validation", "state_data", "validation_data", "write_whole"]

@@ -1,0 +1,131 @@
+"""Results as JSON."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import tempfile
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from rttrr_pin.errors import InputError
+from rttrr_pin.validate import Row, StateReport, Validation
+
+GATE = (
+    "|ours - oracle| <= |bound| + (|bound of x| + 4 eps |x| + cancelled); bound: running error bound of our own operations; "
+    "x: the whole vector, for tau the n or f of its joint; cancelled: rounding of terms that only the oracle has"
+)
+
+
+def validation_data(result: Validation) -> dict[str, Any]:
+    """The outcome of a run: robot, versions, seed, n_states, per quantity the worst and where, verdict."""
+    worst = result.worst
+    quantities: dict[str, dict[str, Any]] = {}
+    for row in result.rows:
+        quantities.setdefault(row.quantity, {})[row.at] = _row(row)
+    return {
+        "robot": result.robot,
+        "oracle": result.oracle,
+        "versions": result.versions,
+        "seed": result.seed,
+        "n_states": result.n_states,
+        "family": result.family,
+        "payload": result.payload,
+        "gate": GATE,
+        "verdict": "agree" if result.agrees else "disagree",
+        "worst": None
+        if worst is None
+        else {"quantity": worst.quantity, "at": worst.at, "state": worst.share.state, "share": worst.share.value},
+        "quantities": quantities,
+        "seconds": result.seconds,
+    }
+
+
+def state_data(report: StateReport) -> dict[str, Any]:
+    """One state in full."""
+    states = report.states
+    gaps = [
+        {
+            "quantity": row.quantity,
+            "at": row.at,
+            "unit": row.unit,
+            "difference": float(gap.difference[0]),
+            "eps": float(gap.relative[0]),
+            "share": float(gap.share[0]),
+        }
+        for row, gap in zip(report.rows, report.gaps, strict=True)
+    ]
+    return {
+        "robot": report.robot,
+        "oracle": report.oracle,
+        "state": report.index,
+        "joints": report.joints,
+        "links": report.ours.links,
+        **{name: getattr(states, name)[0].tolist() for name in "qva"},
+        "payload": [
+            {
+                "link": report.ours.links[load.link],
+                "force": load.f.ravel().tolist(),
+                "moment": load.n.ravel().tolist(),
+                "expressed_in": "base" if load.in_base else "link",
+            }
+            for load in states.loads
+        ],
+        "ours": {key: x[0].tolist() for key, x in report.ours.items()},
+        "theirs": {key: x[0].tolist() for key, x in report.theirs.items()},
+        "bound": {key: x[0].tolist() for key, x in report.bound.items()},
+        "gaps": gaps,
+        "gate": GATE,
+        "verdict": "agree" if report.agrees else "disagree",
+    }
+
+
+def as_json(data: dict[str, Any]) -> str:
+    """JSON text; what JSON has no number for is written as text ("inf")."""
+    return json.dumps(_finite(data), indent=2, allow_nan=False) + "\n"
+
+
+def write_whole(path: Path, text: str) -> None:
+    """Write a file whole or not at all, however the process ends.
+
+    Raises:
+        InputError: the folder does not exist or cannot be written to.
+    """
+    try:
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        try:
+            with os.fdopen(handle, "w", encoding="utf-8") as file:
+                file.write(text)
+            umask = os.umask(0)
+            os.umask(umask)
+            Path(name).chmod(0o666 & ~umask)
+            Path(name).replace(path)
+        except BaseException:
+            Path(name).unlink(missing_ok=True)
+            raise
+    except OSError as error:
+        raise InputError(f"{path} cannot be written: {error.strerror}; choose another file") from error
+
+
+def _row(row: Row) -> dict[str, Any]:
+    return {
+        "unit": row.unit,
+        "worst_absolute": asdict(row.absolute),
+        "worst_eps": asdict(row.relative),
+        "worst_share_of_gate": asdict(row.share),
+        "failures": row.failures,
+        "verdict": "pass" if row.passed else "fail",
+    }
+
+
+def _finite(data: Any) -> Any:
+    """The same data with text in place of NaN and infinities."""
+    if isinstance(data, dict):
+        return {key: _finite(value) for key, value in data.items()}
+    if isinstance(data, (list, tuple)):
+        return [_finite(value) for value in data]
+    if isinstance(data, float) and not math.isfinite(data):
+        return str(data)
+    return data

@@ -1,0 +1,133 @@
+"""Results as tables for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import NDArray
+from rich.box import SIMPLE_HEAD
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from rttrr_pin.model import QUANTITIES
+from rttrr_pin.validate import Row, StateReport, Validation
+
+Array = NDArray[np.float64]
+
+MOST_ROWS = 60
+"""Beyond it the table keeps the worst row of each quantity."""
+
+LEGEND = "in eps: |ours - theirs| / |theirs|; share: of what rounding can explain (gate: 1)"
+
+
+def show_validation(result: Validation, console: Console, rerun: str = "", full: bool = False) -> None:
+    """The table of a run, its verdict, and how to see the worst state."""
+    console.print(
+        Text(result.robot, "bold"),
+        Text(
+            f"{result.n_states:,} {result.family} states, seed {result.seed}, payload {result.payload}; "
+            f"ours against {result.oracle}"
+        ),
+    )
+    shown = list(result.rows)
+    if len(shown) > MOST_ROWS and not full:
+        groups = [[row for row in result.rows if row.quantity == key] for key in QUANTITIES]
+        shown = [max(group, key=lambda row: row.share.value) for group in groups if group]
+    console.print(_validation_table(shown))
+    if len(shown) < len(result.rows):
+        console.print(Text(f"the worst of {len(result.rows)} rows for each quantity; --full shows all"))
+    console.print(Text(LEGEND, "dim"))
+    _verdict(result.agrees, result, console)
+    worst = result.worst
+    if worst is not None and rerun:
+        where = f"worst state {worst.share.state} ({worst.quantity} at {worst.at})"
+        console.print(Text(f"{where}, in full: {rerun} --state {worst.share.state}"), soft_wrap=True)
+
+
+def show_state(report: StateReport, console: Console) -> None:
+    """One state: its coordinates, then each quantity, ours beside the oracle's."""
+    console.print(Text(report.robot, "bold"), Text(f"state {report.index}; ours against {report.oracle}"))
+    console.print(_coordinates_table(report))
+    for load in report.states.loads:
+        axes = "base axes" if load.in_base else "link axes"
+        f, n = _numbers(load.f.ravel()), _numbers(load.n.ravel())
+        console.print(Text(f"payload at {report.ours.links[load.link]}, {axes}: f {f} N, n {n} N m"))
+    table = Table("", "ours", "theirs", "difference", "in eps", "verdict", box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    for column in (1, 2, 3, 4):
+        table.columns[column].justify = "right"
+        table.columns[column].no_wrap = True
+    pairs = zip(report.rows, report.gaps, _values(report), strict=True)
+    previous = ""
+    for row, gap, (ours, theirs) in pairs:
+        if row.quantity != previous:
+            table.add_section()
+            table.add_row(Text(row.quantity if row.quantity == "tau" else f"{row.quantity} [{row.unit}]", "bold"))
+        previous = row.quantity
+        table.add_row(
+            Text(f"{row.at} [{row.unit}]" if row.quantity == "tau" else row.at),
+            "\n".join(f"{x:.12g}" for x in ours),
+            "\n".join(f"{x:.12g}" for x in theirs),
+            f"{gap.difference[0]:.1e}",
+            f"{gap.relative[0]:.1f}",
+            _word(bool(gap.share[0] <= 1.0)),
+        )
+    console.print(table)
+    console.print(_word(report.agrees))
+
+
+def _validation_table(rows: Iterable[Row]) -> Table:
+    table = Table("quantity", "at", "worst error", "in eps", "share", "at state", "verdict")
+    for column in (2, 3, 4, 5):
+        table.columns[column].justify = "right"
+    previous = ""
+    for row in rows:
+        if previous and row.quantity != previous:
+            table.add_section()
+        first = row.quantity != previous
+        previous = row.quantity
+        table.add_row(
+            row.quantity if first else "",
+            Text(row.at),
+            f"{row.absolute.value:.1e} {row.unit}",
+            f"{row.relative.value:.1f}",
+            f"{row.share.value:.3f}",
+            str(row.share.state),
+            _word(row.passed),
+        )
+    return table
+
+
+def _coordinates_table(report: StateReport) -> Table:
+    table = Table("joint", "q", "v", "a")
+    states = report.states
+    for j, joint in enumerate(report.joints):
+        table.add_row(Text(joint), *(f"{x[0, j]:.17g}" for x in (states.q, states.v, states.a)))
+    return table
+
+
+def _values(report: StateReport) -> Iterable[tuple[Array, Array]]:
+    """Ours and theirs, in the order of the rows."""
+    ours, theirs = report.ours, report.theirs
+    for column in range(ours.tau.shape[1]):
+        yield ours.tau[0, column, None], theirs.tau[0, column, None]
+    for key in ("F", "N", "f", "n"):
+        yield from zip(getattr(ours, key)[0], getattr(theirs, key)[0], strict=True)
+
+
+def _verdict(agrees: bool, result: Validation, console: Console) -> None:
+    if agrees:
+        told = f"all of {result.n_states:,} states x {len(result.rows)} rows within rounding"
+    else:
+        bad = [row for row in result.rows if not row.passed]
+        told = f"{len(bad)} of {len(result.rows)} rows beyond rounding, first {bad[0].quantity} at {bad[0].at}"
+    console.print(_word(agrees), Text(f"{told} ({result.seconds:.1f} s)"))
+
+
+def _word(passed: bool) -> Text:
+    return Text("PASS", "bold green") if passed else Text("FAIL", "bold red")
+
+
+def _numbers(x: Array) -> str:
+    return "(" + ", ".join(f"{value:.6g}" for value in x) + ")"

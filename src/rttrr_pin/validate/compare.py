@@ -1,0 +1,149 @@
+"""Two results side by side: how far apart, and whether rounding can explain it.
+
+The gate, for each state, quantity and link (or joint):
+
+    |ours - oracle| <= |bound| + (|bound of x| + 4 eps |x| + cancelled)
+
+with Euclidean norms. `bound` is the running error bound on our own rounding (`certify.rounding`). The bracket is the
+oracle's allowance. It adds up the same terms in another order and in other axes, so it gets the same bound once more,
+but for the whole vector x that the quantity belongs to: F, N, f or n of the link itself, and for tau the n of the
+joint (its f, where it slides), of which tau is one component. In other axes an error of one component is an error of
+all. The 4 eps are for the rounding of what is handed to the oracle; `cancelled` is the rounding of terms that only the
+oracle's formulas have and that cancel in its result (`oracles.Evaluation.rounding`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.model import LinkWrenches, Model
+from rttrr_pin.oracles import Evaluation
+
+Array = NDArray[np.float64]
+
+EPS = float(np.finfo(float).eps)
+
+HANDOVER = 4 * EPS
+"""Relative: payloads, placements and angles are rounded on their way into the oracle's conventions."""
+
+
+@dataclass(slots=True)
+class Worst:
+    """The largest value seen, and the state it was seen in."""
+
+    value: float = 0.0
+    state: int = -1
+
+    def see(self, values: Array, first: int) -> None:
+        """Take in the values of consecutive states; the earliest of equals stays."""
+        if len(values):
+            k = int(np.argmax(values))
+            if values[k] > self.value or self.state < 0:
+                self.value, self.state = float(values[k]), first + k
+
+
+@dataclass(slots=True)
+class Row:
+    """What was seen of one quantity at one link or joint.
+
+    Attributes:
+        quantity: tau, F, N, f or n.
+        at: name of the link (of the joint for tau).
+        unit: of the quantity.
+        absolute: largest |ours - oracle| in that unit.
+        relative: largest |ours - oracle| / |oracle| in eps. For tau the divisor is the norm of the joint's n (of its
+            f, where it slides), of which tau is one component.
+        share: largest |ours - oracle| as a share of what the gate allows.
+        failures: states outside the gate.
+    """
+
+    quantity: str
+    at: str
+    unit: str
+    absolute: Worst = field(default_factory=Worst)
+    relative: Worst = field(default_factory=Worst)
+    share: Worst = field(default_factory=Worst)
+    failures: int = 0
+
+    @property
+    def passed(self) -> bool:
+        """Whether every state lies within the gate."""
+        return self.failures == 0
+
+
+@dataclass(frozen=True, slots=True)
+class Gap:
+    """One quantity at one link over consecutive states, (N,) each: |ours - oracle|, |oracle|, and what is allowed."""
+
+    difference: Array
+    size: Array
+    allowed: Array
+
+    @property
+    def relative(self) -> Array:
+        """|ours - oracle| / |oracle| in eps; 0 where they are equal."""
+        return _ratio(self.difference, self.size * EPS)
+
+    @property
+    def share(self) -> Array:
+        """|ours - oracle| as a share of what is allowed; 0 where they are equal."""
+        return _ratio(self.difference, self.allowed)
+
+
+class Comparison:
+    """Gathers the worst over any number of states, in memory that does not grow with them."""
+
+    def __init__(self, model: Model) -> None:
+        self.rows = [Row(*labels) for labels in _labels(model)]
+        self._wholes = [("n" if joint.type.rotates else "f", model.joints.index(joint)) for joint in model.moving]
+
+    def add(self, first: int, ours: LinkWrenches, oracle: Evaluation, bound: LinkWrenches) -> None:
+        """Take in the results of consecutive states, (N, ...) each."""
+        for row, gap in zip(self.rows, self.gaps(ours, oracle, bound), strict=True):
+            row.absolute.see(gap.difference, first)
+            row.relative.see(gap.relative, first)
+            row.share.see(gap.share, first)
+            row.failures += int((gap.share > 1.0).sum())
+
+    def gaps(self, ours: LinkWrenches, oracle: Evaluation, bound: LinkWrenches) -> Iterator[Gap]:
+        """The gap of each row, in the order of `rows`."""
+        theirs, cancelled = oracle.wrenches, oracle.rounding
+        for column, (whole, link) in enumerate(self._wholes):
+            difference = np.abs(ours.tau[:, column] - theirs.tau[:, column])
+            x, x_bound = (_norm(getattr(result, whole)[:, link]) for result in (theirs, bound))
+            yield _gap(difference, np.abs(bound.tau[:, column]), x, x_bound + cancelled[whole][:, link])
+        for key in ("F", "N", "f", "n"):
+            for link in range(len(ours.links)):
+                mine, their, mine_bound = (getattr(result, key)[:, link] for result in (ours, theirs, bound))
+                x_bound = _norm(mine_bound)
+                yield _gap(_norm(mine - their), x_bound, _norm(their), x_bound + cancelled[key][:, link])
+
+
+def _gap(difference: Array, bound: Array, x: Array, x_bound: Array) -> Gap:
+    difference = np.where(np.isfinite(difference), difference, np.inf)  # an oracle's NaN is as far off as can be
+    x = np.where(np.isfinite(x), x, 0.0)  # and must not widen the gate of what else is measured against it
+    return Gap(difference, size=x, allowed=bound + (x_bound + HANDOVER * x))
+
+
+def _norm(vectors: Array) -> Array:
+    return np.linalg.norm(vectors, axis=-1)  # type: ignore[no-any-return]
+
+
+def _ratio(part: Array, whole: Array) -> Array:
+    """Part / whole; 0 where part is 0, inf where only whole is."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = np.where(part == 0.0, 0.0, part / whole)
+    return np.where(np.isnan(ratio), np.inf, ratio)
+
+
+def _labels(model: Model) -> Iterator[tuple[str, str, str]]:
+    """Quantity, place and unit of each row."""
+    for joint in model.moving:
+        yield "tau", joint.name, joint.type.effort_unit
+    for quantity, unit in (("F", "N"), ("N", "N m"), ("f", "N"), ("n", "N m")):
+        for name in model.link_names:
+            yield quantity, name, unit

@@ -1,0 +1,219 @@
+"""Run a validation: block by block, ours against an oracle's."""
+
+from __future__ import annotations
+
+import platform
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from importlib import metadata
+
+import numpy as np
+
+from rttrr_pin.arithmetic import Load
+from rttrr_pin.certify import bounded_dynamics
+from rttrr_pin.errors import InputError
+from rttrr_pin.model import LinkWrenches, Wrench
+from rttrr_pin.oracles import Evaluation, Oracle, make_oracle
+from rttrr_pin.robot import Robot, blocks
+from rttrr_pin.validate.compare import Comparison, Gap, Row
+from rttrr_pin.validate.states import Sampler, States
+
+BLOCK = 1024
+"""States compared at a time; the memory of a run is that of one block, whatever the number of states."""
+
+Progress = Callable[[int], None]
+"""Called with the number of states done so far."""
+
+
+@dataclass(frozen=True, slots=True)
+class Validation:
+    """The outcome of a run.
+
+    Attributes:
+        robot: its name.
+        oracle: name and version of the other program.
+        n_states: how many states were compared.
+        family: how they were drawn.
+        seed: of the generator.
+        payload: what the robot carried, in words.
+        rows: what was seen of each quantity at each link or joint.
+        seconds: wall time.
+        versions: of what took part.
+    """
+
+    robot: str
+    oracle: str
+    n_states: int
+    family: str
+    seed: int
+    payload: str
+    rows: tuple[Row, ...]
+    seconds: float
+    versions: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def agrees(self) -> bool:
+        """Whether every state of every row lies within the gate."""
+        return all(row.passed for row in self.rows)
+
+    @property
+    def worst(self) -> Row | None:
+        """The row that comes closest to its gate, or lies furthest beyond; None for a robot without joints."""
+        return max(self.rows, key=lambda row: row.share.value, default=None)
+
+
+@dataclass(frozen=True, slots=True)
+class StateReport:
+    """One state in full: ours beside the oracle's.
+
+    Attributes:
+        robot: its name.
+        oracle: name and version of the other program.
+        index: which state.
+        joints: names of the moving joints.
+        states: q, v, a and payload, batches of one.
+        ours: our result, a batch of one.
+        theirs: the oracle's.
+        bound: the bound on our rounding.
+        rows: labels of the gaps.
+        gaps: how far apart, one for each row.
+    """
+
+    robot: str
+    oracle: str
+    index: int
+    joints: tuple[str, ...]
+    states: States
+    ours: LinkWrenches
+    theirs: LinkWrenches
+    bound: LinkWrenches
+    rows: tuple[Row, ...]
+    gaps: tuple[Gap, ...]
+
+    @property
+    def agrees(self) -> bool:
+        """Whether every row lies within the gate."""
+        return all(bool(gap.share[0] <= 1.0) for gap in self.gaps)
+
+
+def validate(
+    robot: Robot,
+    states: int = 10_000,
+    seed: int = 0,
+    family: str = "uniform",
+    payload: Wrench | str | None = None,
+    oracle: str = "pinocchio",
+    progress: Progress | None = None,
+) -> Validation:
+    """Compare our recursion with an oracle on many states.
+
+    Args:
+        robot: the robot.
+        states: how many.
+        seed: of the generator; the same seed gives the same states.
+        family: how they are drawn, one of `FAMILIES`.
+        payload: None; a wrench, the same in every state; or `"random"`, another in each state.
+        oracle: one of `oracles.ORACLES`.
+        progress: called after each block with the number of states done.
+
+    Returns:
+        The worst of each quantity at each link, and the verdict.
+
+    Raises:
+        InputError: an argument cannot be used.
+        OracleError: the oracle is missing, refuses the robot, or built another model than the file describes.
+    """
+    if states < 1:
+        raise InputError(f"states is {states}: expected a whole number from 1, since none would prove nothing")
+    start = time.perf_counter()
+    sampler, other, comparison = _prepare(robot, seed, family, payload, oracle)
+    for part in blocks(states, BLOCK):
+        drawn = sampler.draw(part.start, part.stop - part.start)
+        comparison.add(drawn.first, *_both(robot, other, drawn))
+        if progress is not None:
+            progress(part.stop)
+    return Validation(
+        robot=robot.name,
+        oracle=f"{other.name} {other.version}",
+        n_states=states,
+        family=family,
+        seed=seed,
+        payload=_in_words(payload),
+        rows=tuple(comparison.rows),
+        seconds=time.perf_counter() - start,
+        versions=versions(other),
+    )
+
+
+def compare_state(
+    robot: Robot,
+    index: int,
+    seed: int = 0,
+    family: str = "uniform",
+    payload: Wrench | str | None = None,
+    oracle: str = "pinocchio",
+) -> StateReport:
+    """One of the states that `validate` draws for the same seed, family and payload, in full.
+
+    Raises:
+        InputError: an argument cannot be used.
+        OracleError: as in `validate`.
+    """
+    if index < 0:
+        raise InputError(f"state is {index}: states are counted from 0")
+    sampler, other, comparison = _prepare(robot, seed, family, payload, oracle)
+    drawn = sampler.draw(index, 1)
+    ours, theirs, bound = _both(robot, other, drawn)
+    gaps = tuple(comparison.gaps(ours, theirs, bound))
+    label = f"{other.name} {other.version}"
+    rows = tuple(comparison.rows)
+    return StateReport(robot.name, label, index, robot.joint_names, drawn, ours, theirs.wrenches, bound, rows, gaps)
+
+
+def versions(oracle: Oracle) -> dict[str, str]:
+    """What took part, so that a result can be had again."""
+    return {
+        "rttrr-pin": metadata.version("rttrr-pin"),
+        oracle.name: oracle.version,
+        "numpy": np.__version__,
+        "python": platform.python_version(),
+        "machine": platform.machine(),
+    }
+
+
+def _prepare(
+    robot: Robot, seed: int, family: str, payload: Wrench | str | None, oracle: str
+) -> tuple[Sampler, Oracle, Comparison]:
+    sampler = Sampler(robot.model, family, seed, _payload(robot, payload))
+    return sampler, make_oracle(oracle, robot.model), Comparison(robot.model)
+
+
+def _payload(robot: Robot, payload: Wrench | str | None) -> Load | str | None:
+    """For the sampler: a load, or the name of the link that gets a random one."""
+    if payload is None:
+        return None
+    if isinstance(payload, str):
+        if payload != "random":
+            raise InputError(f"payload is {payload!r}: expected 'random' or a Wrench")
+        return robot.link_names[robot.payload_link(None)]
+    load = robot.load_of(payload)
+    if load.f.ndim > 1 or load.n.ndim > 1:
+        raise InputError("the payload of a validation has a batch axis: pass one force and one moment of 3 numbers")
+    return load
+
+
+def _in_words(payload: Wrench | str | None) -> str:
+    if isinstance(payload, Wrench):
+        axes = "base axes" if payload.expressed_in == "base" else "link axes"
+        f, n = (np.asarray(x, dtype=float).tolist() for x in (payload.force, payload.moment))
+        return f"force {f} N, moment {n} N m at {payload.link or 'the tool'}, {axes}"
+    return payload or "none"
+
+
+def _both(robot: Robot, oracle: Oracle, drawn: States) -> tuple[LinkWrenches, Evaluation, LinkWrenches]:
+    """Ours, the oracle's, and the bound on ours."""
+    with np.errstate(over="ignore", invalid="ignore"):  # what overflows is shown as a failure, with its state
+        ours, bound = bounded_dynamics(robot.model, drawn.q, drawn.v, drawn.a, drawn.loads)
+        theirs = oracle.evaluate(drawn.q, drawn.v, drawn.a, drawn.loads)
+    return ours, theirs, bound

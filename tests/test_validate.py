@@ -1,0 +1,177 @@
+"""The verdict is right: agreement passes, every kind of disagreement is seen, counted and located."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from tolerances import EPS, ROUNDING
+
+from rttrr_pin import LinkWrenches, Robot, Wrench, oracles
+from rttrr_pin.arithmetic import Load
+from rttrr_pin.errors import InputError
+from rttrr_pin.model import QUANTITIES
+from rttrr_pin.oracles import Evaluation
+from rttrr_pin.oracles.pinocchio import PinocchioOracle
+from rttrr_pin.validate import Validation, compare_state, validate
+
+Spoil = Any
+
+
+class Liar(PinocchioOracle):
+    """An oracle with one number changed; what is changed is set by the test."""
+
+    spoil: Spoil = None
+
+    def evaluate(self, q: np.ndarray, v: np.ndarray, a: np.ndarray, loads: Sequence[Load] = ()) -> Evaluation:
+        result = super().evaluate(q, v, a, loads)
+        type(self).spoil(result.wrenches, q)
+        return result
+
+
+@pytest.fixture
+def liar(monkeypatch: pytest.MonkeyPatch) -> type[Liar]:
+    monkeypatch.setitem(oracles.ORACLES, "liar", f"{__name__}:Liar")
+    monkeypatch.setattr(oracles, "import_module", lambda name: __import__("sys").modules[name])
+    return Liar
+
+
+def outcome(result: Validation) -> dict[tuple[str, str], tuple[int, int]]:
+    """Failures and the state of the worst, of each row that failed."""
+    return {(row.quantity, row.at): (row.failures, row.share.state) for row in result.rows if not row.passed}
+
+
+def test_right_dynamics_agree(rttrr: Robot) -> None:
+    result = validate(rttrr, 3000, payload="random")
+    assert result.agrees and result.n_states == 3000
+    assert [(row.quantity, row.at) for row in result.rows if row.quantity == "tau"] == [
+        ("tau", name) for name in rttrr.joint_names
+    ]
+    for quantity in QUANTITIES[1:]:
+        assert [row.at for row in result.rows if row.quantity == quantity] == list(rttrr.link_names)
+
+
+def test_no_worst_error_is_beyond_500_eps(robot: Robot) -> None:
+    """Normwise, per link."""
+    result = validate(robot, 2000, seed=3)
+    assert max(row.relative.value for row in result.rows) * EPS <= ROUNDING
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+@pytest.mark.parametrize("size", [1e-9, 1.0, np.nan, np.inf])
+def test_one_wrong_number_in_one_state_is_found_and_located(
+    rttrr: Robot, liar: type[Liar], quantity: str, size: float
+) -> None:
+    """In a later block, at one link, in one state of many."""
+    calls: list[int] = []
+
+    def spoil(result: LinkWrenches, q: np.ndarray) -> None:
+        calls.append(len(q))
+        if len(calls) == 2:
+            array = getattr(result, quantity)
+            array[(17, 3) if quantity == "tau" else (17, 3, 1)] += size
+
+    liar.spoil = staticmethod(spoil)
+    result = validate(rttrr, 2500, oracle="liar")
+    at = "joint_4" if quantity == "tau" else "link_4"
+    expected = {(quantity, at): (1, calls[0] + 17)}
+    if quantity == "n":  # tau is measured against the norm of n, so that a wild n leaves tau's verdict alone
+        assert ("tau", at) not in outcome(result)
+    assert outcome(result) == expected
+    assert not result.agrees and result.worst is not None
+    assert (result.worst.quantity, result.worst.at) == (quantity, at)
+
+
+def test_a_systematic_error_of_a_few_eps_of_the_norm_is_not_hidden(rttrr: Robot, liar: type[Liar]) -> None:
+    """A relative error of 1e-12 in every torque: far below what a tolerance of 1e-9 would see."""
+
+    def spoil(result: LinkWrenches, q: np.ndarray) -> None:
+        result.tau[:] *= 1 + 1e-12
+
+    liar.spoil = staticmethod(spoil)
+    assert {at for _, at in outcome(validate(rttrr, 200, oracle="liar"))} == set(rttrr.joint_names)
+
+
+def test_the_outcome_does_not_depend_on_blocks(rttrr: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+    whole = validate(rttrr, 700, payload="random")
+    monkeypatch.setattr("rttrr_pin.validate.run.BLOCK", 64)
+    cut = validate(rttrr, 700, payload="random")
+    assert whole.rows == cut.rows
+
+
+def test_a_longer_run_begins_with_the_shorter(rttrr: Robot) -> None:
+    short, long = validate(rttrr, 500), validate(rttrr, 1500)
+    for one, other in zip(short.rows, long.rows, strict=True):
+        assert other.absolute.value >= one.absolute.value
+        if other.share.state < 500:
+            assert other.share == one.share
+
+
+def test_the_worst_state_can_be_had_again(rttrr: Robot) -> None:
+    result = validate(rttrr, 2000, seed=4, payload="random", family="mixed")
+    worst = result.worst
+    assert worst is not None
+    one = compare_state(rttrr, worst.share.state, seed=4, payload="random", family="mixed")
+    index = result.rows.index(worst)
+    assert one.gaps[index].share[0] == worst.share.value
+    assert one.agrees
+
+
+def test_progress_counts_to_the_end(rttrr: Robot) -> None:
+    seen: list[int] = []
+    validate(rttrr, 2100, progress=seen.append)
+    assert seen[-1] == 2100 and seen == sorted(seen) and len(seen) > 1
+
+
+def test_a_payload_changes_the_torques_of_both_alike(rttrr: Robot) -> None:
+    payload = Wrench((10, 20, 30), (1, 2, 3), expressed_in="base")
+    assert validate(rttrr, 300, payload=payload).agrees
+    loaded, bare = (compare_state(rttrr, 5, payload=p) for p in (payload, None))
+    assert np.abs(loaded.theirs.tau - bare.theirs.tau).min() > 0.1
+
+
+def test_gravity_of_another_model_is_seen(rttrr: Robot) -> None:
+    """Pinocchio under 9.80665, ours under 9.81."""
+    oracle = PinocchioOracle(rttrr.model)
+    oracle.pin_model.gravity.linear = np.array([0, 0, -9.80665])
+    drawn = compare_state(rttrr, 0).states
+    theirs = oracle.evaluate(drawn.q, drawn.v, drawn.a).wrenches
+    ours = rttrr.inverse_dynamics(drawn.q, drawn.v, drawn.a)
+    assert np.abs(ours.F - theirs.F).max() > 1e-3
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"states": 0}, "states is 0.*from 1"),
+        ({"states": -5}, "states is -5"),
+        ({"payload": "heavy"}, "expected 'random' or a Wrench"),
+        ({"payload": Wrench(np.zeros((4, 3)))}, "has a batch axis"),
+        ({"family": "gaussian"}, "no family of states is called 'gaussian'"),
+        ({"oracle": "bullet"}, "no oracle is called 'bullet'"),
+    ],
+    ids=str,
+)
+def test_bad_arguments(rttrr: Robot, arguments: dict[str, Any], message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        validate(rttrr, **{"states": 10} | arguments)
+
+
+def test_negative_state_is_an_error(rttrr: Robot) -> None:
+    with pytest.raises(InputError, match="counted from 0"):
+        compare_state(rttrr, -1)
+
+
+def test_a_gap_of_zero_over_zero_is_zero(rttrr: Robot) -> None:
+    """A massless tool without payload: nothing against nothing."""
+    tool = [row for row in validate(rttrr, 50).rows if row.at == "tool"]
+    assert len(tool) == 4
+    assert all(row.relative.value == row.share.value == 0.0 for row in tool)
+
+
+def test_rows_are_plain_data(rttrr: Robot) -> None:
+    row = validate(rttrr, 10).rows[0]
+    assert replace(row) == row

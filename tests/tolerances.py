@@ -1,0 +1,37 @@
+"""The one ladder of tolerances; each rung has its measured reason. No other tolerance stands in a test.
+
+Comparisons are of norms: |x - y| <= rung * |y|, per force, moment or vector of torques. Componentwise relative errors
+and ULPs are no measure, since cancellation makes them meaningless.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+EPS = float(np.finfo(float).eps)
+
+ROUNDING = 500 * EPS
+"""Two correct programs, normwise. Measured over 1e6 states of RTTRR: see benchmarks/results."""
+
+MODEL = 64 * EPS
+"""Numbers of a model after a few rotations and parallel-axis shifts."""
+
+URDF_DIGITS = 1e-5
+"""The bundled URDFs are written with six significant digits: half a unit of the sixth, 5e-6, and a margin of two."""
+
+NINE_DIGITS = 5e-9
+"""Arrays published as NumPy prints them, to nine or more significant digits: half a unit of the ninth."""
+
+EXACT = 0.0
+"""The same operations in the same order: the same bits."""
+
+
+def norm_error(x: ArrayLike, y: ArrayLike) -> float:
+    """|x - y| / |y| over all entries; 0 where both are 0."""
+    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    assert x.shape == y.shape, (x.shape, y.shape)
+    difference, size = float(np.linalg.norm(x - y)), float(np.linalg.norm(y))
+    if difference == 0.0:
+        return 0.0
+    return difference / size if size else float("inf")
