@@ -5,9 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from chains import EXAMPLES
 
 import rttrr_pin
+from chains import EXAMPLES
 from rttrr_pin import Robot
 
 

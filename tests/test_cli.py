@@ -11,9 +11,9 @@ import time
 from pathlib import Path
 
 import pytest
-from chains import EXAMPLES
 
 import rttrr_pin
+from chains import EXAMPLES
 from rttrr_pin import oracles
 from rttrr_pin.cli import main
 from rttrr_pin.model import QUANTITIES

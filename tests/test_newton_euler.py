@@ -5,17 +5,17 @@ from __future__ import annotations
 import mpmath
 import numpy as np
 import pytest
-from chains import RANDOM_TYPES, random_chain
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from tolerances import EPS, MODEL, ROUNDING, norm_error
 
 import rttrr_pin
+from chains import RANDOM_TYPES, random_chain
 from rttrr_pin import LinkWrenches, Robot, Wrench
 from rttrr_pin.arithmetic import FLOAT, Arithmetic, Load, evaluate
 from rttrr_pin.oracles import make_oracle
 from rttrr_pin.validate import EPS as PACKAGE_EPS
 from rttrr_pin.validate import FAMILIES, Sampler, validate
+from tolerances import EPS, MODEL, ROUNDING, norm_error
 
 SEEDS = (0, 1, 2)
 

@@ -8,13 +8,13 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 import pytest
-from tolerances import ROUNDING, norm_error
 
 from rttrr_pin import Robot
 from rttrr_pin.errors import ModelMismatchError, OracleError, UnknownNameError
 from rttrr_pin.model import Joint, Limits, Link, Model
 from rttrr_pin.oracles import make_oracle
 from rttrr_pin.validate import Sampler
+from tolerances import ROUNDING, norm_error
 
 
 def with_link(model: Model, **changes: Any) -> Model:

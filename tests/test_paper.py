@@ -18,11 +18,11 @@ from functools import cache
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tolerances import ROUNDING
 
 import rttrr_pin
 from rttrr_pin import LinkWrenches, Robot, Wrench
 from rttrr_pin.model import Joint, JointType, Link, Model
+from tolerances import ROUNDING
 
 Array = NDArray[np.float64]
 Symbols = dict[str, Array | float]

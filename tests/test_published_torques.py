@@ -19,10 +19,10 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from tolerances import EXACT, NINE_DIGITS, norm_error
 
 from rttrr_pin import Robot, Wrench
 from rttrr_pin.model import Joint, JointType, Link, Model
+from tolerances import EXACT, NINE_DIGITS, norm_error
 
 Array = NDArray[np.float64]
 

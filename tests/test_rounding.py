@@ -5,14 +5,14 @@ from __future__ import annotations
 import mpmath
 import numpy as np
 import pytest
-from test_newton_euler import mp_arithmetic
-from tolerances import ROUNDING
 
 from rttrr_pin import Robot
 from rttrr_pin.arithmetic import Load, evaluate
 from rttrr_pin.certify import bounded_dynamics
 from rttrr_pin.model import Model
 from rttrr_pin.validate import FAMILIES, Sampler
+from test_newton_euler import mp_arithmetic
+from tolerances import ROUNDING
 
 
 def exact_dynamics(

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from chains import EXAMPLES
 from hypothesis import given
 from hypothesis import strategies as st
 
 import rttrr_pin
+from chains import EXAMPLES
 from rttrr_pin import Robot
 from rttrr_pin.errors import InputError, UnknownNameError
 from rttrr_pin.validate import FAMILIES, Sampler

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from chains import EXAMPLES
 
 import rttrr_pin
+from chains import EXAMPLES
 from rttrr_pin.errors import UnknownNameError, UrdfError
 from rttrr_pin.model import JointType
 from rttrr_pin.model.sources import LARGEST_FILE

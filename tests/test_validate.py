@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tolerances import EPS, ROUNDING
 
 from rttrr_pin import LinkWrenches, Robot, Wrench, oracles
 from rttrr_pin.arithmetic import Load
@@ -17,6 +16,7 @@ from rttrr_pin.model import QUANTITIES
 from rttrr_pin.oracles import Evaluation
 from rttrr_pin.oracles.pinocchio import PinocchioOracle
 from rttrr_pin.validate import Validation, compare_state, validate
+from tolerances import EPS, ROUNDING
 
 Spoil = Any
 

@@ -142,9 +142,7 @@ def newton_euler(
         w.append(carried + joint.w)
         w_dot.append(R.T @ w_dot_i + carried.cross(joint.w) + joint.w_dot)
         v_dot.append(
-            R.T @ (w_dot_i.cross(p) + w_i.cross(w_i.cross(p)) + v_dot_i)
-            + carried.cross(joint.v) * 2
-            + joint.v_dot
+            R.T @ (w_dot_i.cross(p) + w_i.cross(w_i.cross(p)) + v_dot_i) + carried.cross(joint.v) * 2 + joint.v_dot
         )
         r_C = body.r_C
         v_dot_C = w_dot[-1].cross(r_C) + w[-1].cross(w[-1].cross(r_C)) + v_dot[-1]  # (9)-(15)

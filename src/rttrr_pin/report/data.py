@@ -14,7 +14,8 @@ from rttrr_pin.errors import InputError
 from rttrr_pin.validate import Row, StateReport, Validation
 
 GATE = (
-    "|ours - oracle| <= |bound| + (|bound of x| + 4 eps |x| + cancelled); bound: running error bound of our own operations; "
+    "|ours - oracle| <= |bound| + (|bound of x| + 4 eps |x| + cancelled); "
+    "bound: running error bound of our own operations; "
     "x: the whole vector, for tau the n or f of its joint; cancelled: rounding of terms that only the oracle has"
 )
 

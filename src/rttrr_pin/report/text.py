@@ -19,7 +19,7 @@ Array = NDArray[np.float64]
 MOST_ROWS = 60
 """Beyond it the table keeps the worst row of each quantity."""
 
-LEGEND = "in eps: |ours - theirs| / |theirs|; share: of what rounding can explain (gate: 1)"
+LEGEND = "in eps: of |theirs|; share: of what rounding can explain, the gate is at 1"
 
 
 def show_validation(result: Validation, console: Console, rerun: str = "", full: bool = False) -> None:

@@ -1,0 +1,83 @@
+"""The tables of the README, made from benchmarks/results: `python benchmarks/readme_tables.py [--check]`.
+
+Without --check the README is rewritten between its markers; with it, exit 1 if it is out of date.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import Any
+
+HERE = Path(__file__).parent
+README = HERE.parent / "README.md"
+
+
+def agreement_table() -> list[str]:
+    data = _result("agreement")
+    pin = data["versions"]["pin"]
+    return [
+        f"{data['states']:,} random states of RTTRR with a random payload, ours against Pinocchio {pin}: "
+        f"**{data['verdict']}** ({_machine(data)}; `python benchmarks/agreement.py`).",
+        "",
+        "| | tau | F | N | f | n |",
+        "|---|---|---|---|---|---|",
+        "| worst difference, eps of the link's own norm | "
+        + " | ".join(f"{data['worst'][key]['worst_eps']:.0f}" for key in data["worst"])
+        + " |",
+        "| worst share of what rounding can explain | "
+        + " | ".join(f"{data['worst'][key]['worst_share_of_gate']:.2f}" for key in data["worst"])
+        + " |",
+    ]
+
+
+def cost_table() -> list[str]:
+    data = _result("cost")
+    lines = [
+        f"Cost of the whole command, process start included ({_machine(data)}; `python benchmarks/validate_cost.py`):",
+        "",
+        "| `rttrr-pin validate --states` | wall time, median | peak memory, median |",
+        "|---|---|---|",
+    ]
+    lines += [f"| {row['states']:,} | {row['wall_s'][1]} s | {row['peak_mib'][1]:.0f} MiB |" for row in data["rows"]]
+    return lines
+
+
+TABLES = {"agreement": agreement_table, "cost": cost_table}
+
+
+def _result(name: str) -> dict[str, Any]:
+    data: dict[str, Any] = json.loads((HERE / "results" / f"{name}.json").read_text())
+    return data
+
+
+def _machine(data: dict[str, Any]) -> str:
+    return f"{data['machine']['processor']}, {data['machine']['cores']} cores"
+
+
+def rebuilt(text: str) -> str:
+    """The README with its tables made anew."""
+    for name, table in TABLES.items():
+        begin, end = f"<!-- table: {name} -->\n", f"<!-- end: {name} -->"
+        head, rest = text.split(begin)
+        text = head + begin + "\n".join(table()) + "\n" + end + rest.split(end, 1)[1]
+    return text
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--check", action="store_true")
+    check = parser.parse_args().check
+    text = README.read_text()
+    new = rebuilt(text)
+    if check:
+        print("the tables are up to date" if new == text else "run python benchmarks/readme_tables.py")
+        return int(new != text)
+    README.write_text(new)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
