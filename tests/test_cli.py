@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -123,10 +124,13 @@ UNUSABLE = {
     "payload-link": (["validate", "--payload", "1,2,3,4,5,6", "--payload-link", "hand"], "no link is called 'hand'"),
     "payload-link-alone": (["validate", "--payload-link", "tool"], "go with six numbers"),
     "payload-axes": (["validate", "--payload", "1,2,3,4,5,6", "--payload-axes", "world"], "expected link or base"),
-    "payload-nan": (["validate", "--payload", "nan,2,3,4,5,6"], r"is nan"),
+    "payload-nan": (["validate", "--payload", "nan,2,3,4,5,6"], "expected 6 numbers"),
     "gravity": (["validate", "--gravity", "9.81"], "--gravity is '9.81': expected 3 numbers"),
     "seed": (["validate", "--seed", "-1"], "seed is -1"),
-    "state": (["validate", "--state", "-1"], "counted from 0"),
+    "state": (["validate", "--state", "-1"], "state is -1: expected a whole number from 0"),
+    "state-huge": (["validate", "--state", "99999999999999999999"], "expected a whole number from 0 to 10^15"),
+    "gravity-word": (["validate", "--gravity", "1_0,0,0"], "expected 3 numbers"),
+    "nothing": (["validate", ""], "is empty"),
     "oracle": (["validate", "--oracle", "bullet"], "there are pinocchio"),
     "json-folder": (["validate", "--states", "5", "--json", "no/such/folder/x.json"], "cannot be written"),
     "no-command": ([], "Usage"),
@@ -195,11 +199,59 @@ def test_interrupt_leaves_cleanly(tmp_path: Path) -> None:
     assert not target.exists() and list(tmp_path.iterdir()) == []
 
 
-def test_a_reader_that_leaves_does_not_change_the_verdict() -> None:
+@pytest.mark.parametrize("words", [[], ["--json", "-"], ["--state", "3"]], ids=["table", "json", "state"])
+def test_a_reader_that_leaves_does_not_change_the_verdict(words: list[str]) -> None:
     read, write = os.pipe()
     os.close(read)
-    words = [sys.executable, "-m", "rttrr_pin", "validate", "--states", "50"]
-    done = subprocess.run(words, stdout=write, stderr=subprocess.PIPE, text=True, timeout=120, check=False)
+    command = [sys.executable, "-m", "rttrr_pin", "validate", "--states", "50", *words]
+    done = subprocess.run(command, stdout=write, stderr=subprocess.PIPE, text=True, timeout=120, check=False)
     os.close(write)
     assert done.returncode == 0
     assert "Traceback" not in done.stderr
+
+
+def test_json_goes_into_a_pipe_and_through_a_link(tmp_path: Path) -> None:
+    """What is no file is written to, and not replaced."""
+    os.mkfifo(tmp_path / "fifo")
+    (tmp_path / "link.json").symlink_to(tmp_path / "target.json")
+    reader = subprocess.Popen(["cat", str(tmp_path / "fifo")], stdout=subprocess.PIPE, text=True)
+    assert main(["validate", "--states", "5", "--quiet", "--json", str(tmp_path / "fifo")]) == 0
+    out, _ = reader.communicate(timeout=30)
+    assert json.loads(out)["verdict"] == "agree"
+    assert (tmp_path / "fifo").is_fifo()
+    assert main(["validate", "--states", "5", "--quiet", "--json", str(tmp_path / "link.json")]) == 0
+    assert (tmp_path / "link.json").is_symlink()
+    assert json.loads((tmp_path / "target.json").read_text())["n_states"] == 5
+
+
+def test_the_command_for_the_worst_state_draws_that_state(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+    """And writes no file anew."""
+    words = [
+        "validate",
+        "--states",
+        "300",
+        "--seed",
+        "3",
+        "--payload",
+        "random",
+        "--base",
+        "floating",
+        "--json",
+        str(tmp_path / "x.json"),
+    ]
+    assert main(words) == 0
+    line = capsys.readouterr().out.splitlines()[-1]
+    again = shlex.split(line.split(": ", 1)[1])
+    assert "--json" not in again
+    worst = json.loads((tmp_path / "x.json").read_text())["worst"]
+    assert main([*again[1:], "--json", "-"]) == 0
+    gaps = json.loads(capsys.readouterr().out)["gaps"]
+    assert max(gap["share"] for gap in gaps) == worst["share"]
+
+
+def test_what_is_not_by_default_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["validate", "--states", "5", "--base", "floating", "--gravity", "0,0,-1.62"]) == 0
+    assert "floating base, gravity (0, 0, -1.62) m/s^2" in " ".join(capsys.readouterr().out.split())
+    assert main(["validate", "--states", "5", "--base", "floating", "--gravity", "0,0,-1.62", "--json", "-"]) == 0
+    data = json.loads(capsys.readouterr().out)
+    assert (data["base"], data["gravity"]) == ("floating", [0, 0, -1.62])

@@ -17,18 +17,8 @@ from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 from rttrr_pin.errors import InputError
-from rttrr_pin.model.modular_arm import (
-    CODES,
-    MATERIALS,
-    MODULES,
-    PAPER,
-    build_arm,
-    build_urdf,
-    modules_of,
-    readme_tables,
-    with_tables,
-    write_all,
-)
+from rttrr_pin.model.arm import CODES, MATERIALS, MODULES, build_arm, build_urdf, modules_of
+from rttrr_pin.model.arm.readme import PAPER, readme_tables, with_tables, write_all
 from rttrr_pin.model.solids import Box, Cylinder, Part, RigidBody, Sphere, combine
 from tolerances import MODEL, ROUNDING, URDF_DIGITS, norm_error
 

@@ -101,7 +101,7 @@ def test_armless_robot_has_reactions_only(robot: Robot) -> None:
 
 def mp_arithmetic() -> Arithmetic:
     number = lambda value, error: mpmath.mpf(value)
-    return Arithmetic(number, column=mpmath.mpf, sincos=lambda q: (mpmath.sin(q), mpmath.cos(q)))
+    return Arithmetic(number, mpmath.mpf, sincos=lambda q: (mpmath.sin(q), mpmath.cos(q)), sign=mpmath.sign)
 
 
 @pytest.mark.parametrize("seed", SEEDS)

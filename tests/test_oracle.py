@@ -9,12 +9,15 @@ import numpy as np
 import pinocchio as pin
 import pytest
 
+import rttrr_pin
+from chains import random_chain
 from rttrr_pin import Robot
-from rttrr_pin.errors import ModelMismatchError, OracleError, UnknownNameError
-from rttrr_pin.model import Joint, Limits, Link, Model
+from rttrr_pin.errors import InputError, ModelMismatchError, OracleError, UnknownNameError
+from rttrr_pin.model import Drive, Joint, JointType, Limits, Link, Mimic, Model
 from rttrr_pin.oracles import make_oracle
 from rttrr_pin.validate import Sampler
 from tolerances import ROUNDING, norm_error
+from trees import random_tree
 
 
 def with_link(model: Model, **changes: Any) -> Model:
@@ -41,6 +44,8 @@ TAMPERED: dict[str, tuple[Any, str]] = {
     "velocity": (lambda m: with_joint(m, limits=replace(m.joints[2].limits, velocity=9.0)), "joint 'joint_3' velocity"),
     "effort": (lambda m: with_joint(m, limits=replace(m.joints[2].limits, effort=9.0)), "joint 'joint_3' effort"),
     "name": (lambda m: with_joint(m, name="joint_x"), "moving joints: joint_1"),
+    "damping": (lambda m: with_joint(m, dynamics=Drive(damping=0.1)), "joint 'joint_3' damping"),
+    "friction": (lambda m: with_joint(m, dynamics=Drive(friction=0.1)), "joint 'joint_3' friction"),
 }
 
 
@@ -58,15 +63,13 @@ def test_the_untampered_model_is_accepted(robot: Robot) -> None:
 
 
 def test_a_model_made_from_numbers_has_no_oracle() -> None:
-    model = Model("numbers", Link("base"), (Link("arm", 1.0),), (Joint("j", "revolute", limits=Limits()),))  # type: ignore[arg-type]
+    model = Model("numbers", Link("base"), (Link("arm", 1.0),), (Joint("j", JointType.REVOLUTE, limits=Limits()),))
     with pytest.raises(OracleError, match="made from numbers"):
         make_oracle("pinocchio", model)
 
 
 def test_what_pinocchio_refuses_is_an_oracle_error() -> None:
     """A revolute joint without limits: URDF wants them, dynamics do not need them."""
-    import rttrr_pin
-
     text = (
         '<robot name="x"><link name="a"/><link name="b"/><joint name="j" type="revolute"><parent link="a"/>'
         '<child link="b"/><axis xyz="0 0 1"/></joint></robot>'
@@ -100,3 +103,58 @@ def test_each_quantity_is_what_pinocchio_leaves_in_data(rttrr: Robot) -> None:
             net = central * a + v.cross(central * v)
             assert norm_error(got.F[k, i], net.linear) <= ROUNDING
             assert norm_error(got.N[k, i], net.angular) <= ROUNDING
+
+
+@pytest.mark.parametrize("payload", [None, "tool"])
+def test_a_state_gives_the_same_bits_in_any_batch(payload: str | None) -> None:
+    """On a tree with branches, fixed links and a floating base."""
+    robot = rttrr_pin.load(random_tree(5, 14), base="floating")
+    link = robot.link_names[-1] if payload else None
+    sampler = Sampler(robot.model, seed=1, payload=link)
+    oracle = make_oracle("pinocchio", robot.model)
+    together = sampler.draw(0, 33)
+    whole = oracle.evaluate(together.q, together.v, together.a, together.loads)
+    for k in (0, 16, 32):
+        one = sampler.draw(k, 1)
+        alone = oracle.evaluate(one.q, one.v, one.a, one.loads)
+        for key, x in alone.wrenches.items():
+            np.testing.assert_array_equal(x[0], getattr(whole.wrenches, key)[k])
+        for key, x in alone.rounding.items():
+            np.testing.assert_array_equal(x[0], whole.rounding[key][k])
+
+
+@pytest.mark.parametrize("mimic", [Mimic(0, -0.7, 0.2), Mimic(0, 0.7, 0.3)], ids=["multiplier", "offset"])
+def test_a_misread_follower_is_an_error(mimic: Mimic) -> None:
+    """Where Pinocchio can build followers: the followed joint sorts first."""
+    head, tail = random_chain(8, ("revolute", "prismatic", "revolute")).rsplit("</joint>", 1)
+    model = rttrr_pin.load(f'{head}<mimic joint="joint_1" multiplier="0.7" offset="0.2"/></joint>{tail}').model
+    make_oracle("pinocchio", model)
+    joints = (*model.joints[:2], replace(model.joints[2], mimic=mimic))
+    with pytest.raises(ModelMismatchError, match="joint 'joint_3' mimic"):
+        make_oracle("pinocchio", replace(model, joints=joints))
+
+
+def test_names_that_pinocchio_keeps_for_itself_are_refused() -> None:
+    text = random_chain(5, ("revolute", "revolute"))
+    with pytest.raises(OracleError, match="'universe' has a name that Pinocchio keeps"):
+        make_oracle("pinocchio", rttrr_pin.load(text.replace("joint_2", "universe")).model)
+    floating = rttrr_pin.load(text.replace('"joint_2"', '"joint_x"'), base="floating").model
+    make_oracle("pinocchio", floating)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda m: with_link(m, mass=float("nan")), "mass of link 'link_3' is nan"),
+        (lambda m: with_link(m, inertia=np.triu(m.links[2].inertia)), "is not symmetric"),
+        (lambda m: with_joint(m, R=2 * np.eye(3)), "expected a rotation"),
+        (lambda m: with_joint(m, axis=[0, 2.0, 0]), "expected a unit vector"),
+        (lambda m: with_joint(m, name="joint_1"), "'joint_1' stands 2 times"),
+        (lambda m: with_joint(m, mimic=Mimic(17)), "does not move by itself"),
+        (lambda m: with_joint(m, type=JointType.PLANAR), r"expected \[0, 0, 1\]"),
+    ],
+    ids=["mass", "symmetry", "rotation", "axis", "names", "mimic", "planar"],
+)
+def test_models_made_from_numbers_are_checked(rttrr: Robot, change: Any, message: str) -> None:
+    with pytest.raises(InputError, match=message):
+        change(rttrr.model)

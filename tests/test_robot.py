@@ -12,8 +12,8 @@ import pytest
 
 import rttrr_pin
 from rttrr_pin import Robot, RttrrError, Wrench
+from rttrr_pin.batch import BLOCK
 from rttrr_pin.errors import InputError, MissingJointError, NumberError, ShapeError, UnknownNameError
-from rttrr_pin.robot import BLOCK
 
 ZERO = np.zeros(5)
 JOINTS = tuple(f"joint_{i}" for i in range(1, 6))
@@ -114,6 +114,11 @@ def test_the_tool_hands_on_the_payload(rttrr: Robot) -> None:
     assert (result.at("tool")["n"] == [4, 5, 6]).all()
 
 
+def test_one_state_has_no_batch_axis_to_index(rttrr: Robot) -> None:
+    with pytest.raises(ShapeError, match="of one state and has no batch axis"):
+        rttrr.inverse_dynamics(ZERO, ZERO, ZERO)[0]
+
+
 def test_repr_names_the_joints(rttrr: Robot) -> None:
     assert "joint_3 (prismatic)" in repr(rttrr)
 
@@ -187,6 +192,7 @@ PAYLOADS: dict[str, tuple[Any, type[RttrrError], str]] = {
     "number": (Wrench(3.0), ShapeError, "payload force is a single number"),
     "nan": (Wrench((0, 0, 0), (0, np.nan, 0)), NumberError, r"payload moment\[1\] is nan"),
     "tuple": ((1, 2, 3), InputError, "payload is a int, expected a Wrench"),
+    "integer": (3, InputError, "payload is a int, expected a Wrench"),
 }
 
 

@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+from typing import Any
+
 import mpmath
 import numpy as np
 import pytest
 
+import rttrr_pin
+from chains import random_chain
 from rttrr_pin import Robot
-from rttrr_pin.arithmetic import Load, evaluate
-from rttrr_pin.certify import bounded_dynamics
+from rttrr_pin.arithmetic import UNIT_ROUNDOFF, Load, bodies, evaluate
+from rttrr_pin.certify import BOUNDED, Bounded, bounded_dynamics
 from rttrr_pin.model import Model
 from rttrr_pin.validate import FAMILIES, Sampler
 from test_newton_euler import mp_arithmetic
 from tolerances import ROUNDING
+from trees import random_tree
 
 
 def exact_dynamics(
@@ -26,9 +32,21 @@ def exact_dynamics(
     return out | {"tau": np.array(result.tau, dtype=object)}
 
 
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("base", ["fixed", "floating"])
+def test_no_true_error_exceeds_its_bound_in_trees(seed: int, base: Any) -> None:
+    """Every joint type, followers and friction."""
+    robot = rttrr_pin.load(random_tree(seed, 9), base=base, friction=True)
+    check_bounds(robot, "mixed", seed)
+
+
 @pytest.mark.parametrize("seed", [0, 1])
 @pytest.mark.parametrize("family", FAMILIES)
 def test_no_true_error_exceeds_its_bound(robot: Robot, family: str, seed: int) -> None:
+    check_bounds(robot, family, seed)
+
+
+def check_bounds(robot: Robot, family: str, seed: int) -> None:
     """Against 60 digits on the same doubles, component by component."""
     states = Sampler(robot.model, family, seed, robot.link_names[-1]).draw(0, 12)
     values, bounds = bounded_dynamics(robot.model, states.q, states.v, states.a, states.loads)
@@ -59,3 +77,82 @@ def test_bounds_are_of_the_size_of_rounding(rttrr: Robot) -> None:
         x_, b = x.reshape(500, -1), getattr(bounds, key).reshape(500, -1)
         assert (np.linalg.norm(b, axis=1) <= ROUNDING * np.linalg.norm(x_, axis=1)).all(), key
         assert b.max() > 0.0
+
+
+def mp_rotation(rpy: list[str]) -> Any:
+    """R = Rz(yaw) Ry(pitch) Rx(roll) of decimal angles, in the working precision of mpmath."""
+    (r, p, y) = (mpmath.mpf(float(word)) for word in rpy)
+    x = mpmath.matrix([[1, 0, 0], [0, mpmath.cos(r), -mpmath.sin(r)], [0, mpmath.sin(r), mpmath.cos(r)]])
+    yy = mpmath.matrix([[mpmath.cos(p), 0, mpmath.sin(p)], [0, 1, 0], [-mpmath.sin(p), 0, mpmath.cos(p)]])
+    z = mpmath.matrix([[mpmath.cos(y), -mpmath.sin(y), 0], [mpmath.sin(y), mpmath.cos(y), 0], [0, 0, 1]])
+    return z * yy * x
+
+
+RPY = [
+    "0 0 0.3",
+    "0.1 0.2 0.3",
+    "1.5707963 0 0",
+    "0.7 1.57079632 0.7",
+    "3.14159265358979 1.5707963267949 0",
+    "-2.9 3.1 -0.001",
+    "1e-9 0 3",
+]
+
+
+@pytest.mark.parametrize("rpy", RPY)
+def test_numbers_computed_from_the_file_lie_within_their_bounds(rpy: str) -> None:
+    """Rotation matrices, turned tensors and axes against 60 digits; also entries that round to exactly zero."""
+    tensor = [[0.3, 0.01, -0.02], [0.01, 0.2, 0.03], [-0.02, 0.03, 0.25]]
+    names = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
+    entries = " ".join(f'{name}="{tensor[i][j]}"' for name, (i, j) in names.items())
+    text = (
+        f'<robot name="x"><link name="a"/><link name="b"><inertial><origin rpy="{rpy}"/><mass value="1"/><inertia {entries}/></inertial>'
+        f'</link><joint name="j" type="prismatic"><parent link="a"/><child link="b"/><origin rpy="{rpy}"/><axis xyz="1 -2 0.3"/></joint></robot>'
+    )
+    body = bodies(rttrr_pin.load(text).model, BOUNDED)[0]
+    with mpmath.workdps(60):
+        R = mp_rotation(rpy.split())
+        turned = R * mpmath.matrix([[mpmath.mpf(float(x)) for x in row] for row in tensor]) * R.T
+        length = mpmath.sqrt(1 + 4 + mpmath.mpf(0.3) ** 2)
+        pairs = [(s, R[i, j]) for i, row in enumerate(body.R.rows) for j, s in enumerate(row)]
+        pairs += [(s, turned[i, j]) for i, row in enumerate(body.I.rows) for j, s in enumerate(row)]
+        pairs += [(s, mpmath.mpf(x) / length) for s, x in zip(body.axis, (1, -2, 0.3), strict=True)]
+        for scalar, truth in pairs:
+            value, bound = (scalar.value, scalar.bound) if isinstance(scalar, Bounded) else (scalar, 0.0)
+            assert abs(value - truth) <= bound
+
+
+def test_a_zero_that_was_rounded_is_not_exact() -> None:
+    """R[0, 1] of this rpy rounds to 0, and is not."""
+    text = (
+        '<robot name="x"><link name="a"/><link name="b"><inertial><mass value="1"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/>'
+        '</inertial></link><joint name="j" type="prismatic"><parent link="a"/><child link="b"/><origin rpy="0.7 1.57079632 0.7"/>'
+        '<axis xyz="0 1 0"/></joint></robot>'
+    )
+    robot = rttrr_pin.load(text, gravity=(-9.81, 0, 0))
+    zero = np.zeros((1, 1))
+    values, bounds = bounded_dynamics(robot.model, zero, zero, zero)
+    with mpmath.workdps(60):
+        truth = 9.81 * mp_rotation(["0.7", "1.57079632", "0.7"])[0, 1]
+        assert abs(values.tau[0, 0] - truth) <= bounds.tau[0, 0]
+    assert bounds.tau[0, 0] > 0.0
+
+
+def test_a_chain_of_followers_is_rounded_once_and_bounded() -> None:
+    """0.1 times 0.7 is not 0.07 in binary."""
+    head, joint_2, joint_3 = (
+        random_chain(9, ("revolute",) * 3)
+        .replace("</joint>", '<mimic joint="joint_2" multiplier="0.1"/></joint>', 1)
+        .rsplit("</joint>", 2)
+    )
+    robot = rttrr_pin.load(
+        f'{head}<mimic joint="joint_3" multiplier="0.7" offset="0.3"/></joint>{joint_2}</joint>{joint_3}'
+    )
+    mimic = robot.model.joints[0].mimic
+    assert mimic is not None
+    assert mimic.rounded
+    for rounded, exact in (
+        (mimic.multiplier, Fraction(0.1) * Fraction(0.7)),
+        (mimic.offset, Fraction(0.1) * Fraction(0.3)),
+    ):
+        assert abs(Fraction(rounded) - exact) <= Fraction(UNIT_ROUNDOFF) * abs(exact)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -62,9 +64,12 @@ def test_joints_without_limits_get_finite_ranges() -> None:
 
 
 def test_corners_take_ends_zeros_and_right_angles(rttrr: Robot) -> None:
+    """Right angles for joints that turn; nothing beyond the limits."""
     drawn = Sampler(rttrr.model, "corners").draw(0, 500)
     for j, joint in enumerate(rttrr.model.moving):
-        places = {joint.limits.lower, joint.limits.upper, 0.0, np.pi / 2, -np.pi / 2}
+        places = {joint.limits.lower, joint.limits.upper, 0.0}
+        if joint.type.rotates:
+            places |= {np.pi / 2, -np.pi / 2}
         assert set(drawn.q[:, j]) == places
         assert set(drawn.v[:, j]) == {-joint.limits.velocity, 0.0, joint.limits.velocity}
 
@@ -93,7 +98,7 @@ def test_unknown_family_lists_the_known_ones(rttrr: Robot) -> None:
         Sampler(rttrr.model, "unifrom")
 
 
-@pytest.mark.parametrize("seed", [-1, 2**128])
-def test_seed_out_of_range_is_an_error(rttrr: Robot, seed: int) -> None:
-    with pytest.raises(InputError, match=r"0 to 2\^128 - 1"):
+@pytest.mark.parametrize("seed", [-1, 2**128, 1.5, True, None, "7"])
+def test_a_seed_is_a_whole_number_in_range(rttrr: Robot, seed: Any) -> None:
+    with pytest.raises(InputError, match=r"seed is .*0 to 2\^128 - 1"):
         Sampler(rttrr.model, seed=seed)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from chains import EXAMPLES
 from rttrr_pin.errors import UnknownNameError, UrdfError
 from rttrr_pin.model import JointType
 from rttrr_pin.model.sources import LARGEST_FILE
+from tolerances import MODEL, norm_error
 
 URDF = """<robot name="two">
 <link name="base"/>
@@ -92,7 +94,32 @@ CASES: dict[str, tuple[str, str, str, int | None]] = {
     "negative-velocity": ('velocity="2"', 'velocity="-2"', "velocity limit is -2.0", 15),
     "type": ('type="revolute"', 'type="revolut"', "'revolut' is not supported: did you mean revolute", 11),
     "no-type": ('type="revolute"', "", "has no type", 11),
-    "mimic": ('<origin xyz="0 0 0.5"/>', '<mimic joint="x"/>', "<mimic> is not supported", 11),
+    "mimic-unknown": (
+        '<origin xyz="0 0 0.5"/>',
+        '<mimic joint="tern"/>',
+        "follows joint 'tern', which does not exist: did you mean turn",
+        13,
+    ),
+    "mimic-itself": ('<origin xyz="0 0 0.5"/>', '<mimic joint="turn"/>', "follows itself through turn -> turn", 13),
+    "mimic-fixed": (
+        '<origin xyz="0 0 0.5"/>',
+        '<mimic joint="grip"/>',
+        "joint 'grip' is fixed: only joints with one coordinate",
+        13,
+    ),
+    "mimic-number": (
+        '<origin xyz="0 0 0.5"/>',
+        '<mimic joint="turn" multiplier="1,5"/>',
+        "'1,5' is not a decimal number",
+        13,
+    ),
+    "damping-unit": ('<origin xyz="0 0 0.5"/>', '<dynamics damping="1Nms"/>', "'1Nms' is not a decimal number", 13),
+    "friction-sign": (
+        '<origin xyz="0 0 0.5"/>',
+        '<dynamics friction="-1"/>',
+        "friction is -1: expected a number that is not",
+        13,
+    ),
     "same-link": ('<link name="hand"/>', '<link name="arm"/>', 'link "arm": the name stands 2 times', 3),
     "same-joint": ('name="grip"', 'name="turn"', 'joint "turn": the name stands 2 times', 11),
     "no-name": ('<link name="hand"/>', "<link/>", "<link> has no name", 10),
@@ -163,3 +190,166 @@ def test_links_come_in_chain_order_whatever_the_order_in_the_file() -> None:
     head, *elements = text.replace("<link", "\n<link").replace("<joint", "\n<joint").replace("</robot>", "").split("\n")
     shuffled = head + "".join(np.random.default_rng(0).permutation(np.array(elements, dtype=object))) + "</robot>"
     assert rttrr_pin.load(shuffled).link_names == rttrr_pin.load(text).link_names
+
+
+MISSED: dict[str, tuple[str, str, str, int]] = {
+    # What parsers skip or misread without a sound: most were found by benchmarks/fuzz_urdf.py.
+    "arabic-digits": ('value="1.5"', 'value="\u0661\u0665"', "'\u0661\u0665' is not a decimal number", 6),
+    "no-break-space": ("0.1 0.2 0.3", "0.1\u00a00.2 0.3", "has 2 values, expected 3", 5),
+    "blank-value": ('value="1.5"', 'value="\u2003"', "has 0 values, expected 1", 6),
+    "long-value": ('value="1.5"', f'value="{"1" * 10**5}"', r"larger than float64 can hold", 6),
+    "misspelt-inertial": ("inertial>", "inertail>", "<inertail> has no place in <link>: did you mean inertial", 4),
+    "capital-element": ("<mass", "<Mass", "<Mass> has no place in <inertial>: did you mean mass", 6),
+    "capital-link-in-a-link": ('<link name="hand"/>', '<link name="hand"><Link/></link>', "<Link> has no place", 10),
+    "link-in-a-link": ('<link name="hand"/>', '<link name="hand"><link name="x"/></link>', "no place in <link>", 10),
+    "mass-in-a-link": ('<link name="hand"/>', '<link name="hand"><mass value="1"/></link>', "no place in <link>", 10),
+    "link-in-a-group": (
+        '<link name="hand"/>',
+        '<link name="hand"/><group><link name="x"><inertial/></link></group>',
+        "<link> stands in <group>: move it up",
+        10,
+    ),
+    "namespace": (
+        '<link name="hand"/>',
+        '<link name="hand"/><link xmlns="urn:x" name="x"/>',
+        "has no place in <robot>: write it without a namespace",
+        10,
+    ),
+    "xinclude": (
+        '<link name="hand"/>',
+        '<link name="hand"/><i:include xmlns:i="http://www.w3.org/2001/XInclude" href="x"/>',
+        "is an XInclude",
+        10,
+    ),
+    "attribute": ('xyz="0 0 0.5"', 'xzy="0 0 0.5"', "<origin> has an attribute xzy: expected xyz, rpy", 13),
+    "quaternion": ('xyz="0 0 0.5"', 'quat_xyzw="1 0 0 0"', "<origin> has an attribute quat_xyzw", 13),
+    "misspelt-limit": ('upper="1"', 'uper="1"', "<limit> has an attribute uper: did you mean upper", 15),
+    "value-as-text": ('<mass value="1.5"/>', "<mass>1.5</mass>", "<mass> holds the text '1.5'", 6),
+    "stray-text": ('<link name="hand"/>', '<link name="hand"/>oops', "<robot> holds the text 'oops'", 1),
+    "text-behind": ('<mass value="1.5"/>', '<mass value="1.5"/>x', "<inertial> holds the text 'x'", 4),
+    "axis-of-a-fixed-joint": (
+        '<parent link="arm"/>',
+        '<parent link="arm"/><axis xyz="0 0 1kg"/>',
+        "'1kg' is not a decimal number",
+        17,
+    ),
+    "limit-of-a-fixed-joint": (
+        '<parent link="arm"/>',
+        '<parent link="arm"/><limit effort="1,5"/>',
+        "'1,5' is not a decimal number",
+        17,
+    ),
+    "tensor-overflow": (
+        URDF[URDF.index('rpy="') : URDF.index("</inertial>")],
+        'rpy="0.7 0.7 0"/><mass value="1"/><inertia ixx="1.7e308" ixy="-1.7e308" ixz="0" iyy="1.7e308" iyz="0" izz="0"/>',
+        "too large or too small to compute with",
+        3,
+    ),
+    "limit-above-the-default": (
+        'lower="-1" upper="1"',
+        'lower="0.5"',
+        "lower limit 0.5 is above the upper one, 0.0",
+        15,
+    ),
+}
+
+
+@pytest.mark.parametrize("case", MISSED)
+def test_what_parsers_skip_is_refused_with_its_line(case: str) -> None:
+    old, new, message, line = MISSED[case]
+    assert old in URDF
+    with pytest.raises(UrdfError, match=message) as caught:
+        rttrr_pin.load(URDF.replace(old, new))
+    assert caught.value.line == line
+    assert len(str(caught.value)) < 1000
+
+
+def test_the_line_of_a_document_type_is_found_behind_comments() -> None:
+    text = "<!-- <!DOCTYPE robot>\n -->\n<!DOCTYPE robot>\n" + URDF
+    with pytest.raises(UrdfError, match="remove <!DOCTYPE") as caught:
+        rttrr_pin.load(text)
+    assert caught.value.line == 3
+    assert rttrr_pin.load(text.replace("\n<!DOCTYPE robot>\n", "")).name == "two"
+
+
+def test_external_entities_are_never_opened(tmp_path: Path) -> None:
+    """Opening the pipe would wait for a writer for ever."""
+    os.mkfifo(tmp_path / "pipe")
+    for declared in (f'<!ENTITY a SYSTEM "{tmp_path / "pipe"}">', f'<!ENTITY % a SYSTEM "{tmp_path / "pipe"}">%a;'):
+        for text in (URDF, URDF.replace("</robot>", "&a;</robot>")):
+            with pytest.raises(UrdfError):
+                rttrr_pin.load(f"<!DOCTYPE robot [{declared}]>{text}")
+    with pytest.raises(UrdfError):
+        rttrr_pin.load(f'<!DOCTYPE robot SYSTEM "{tmp_path / "pipe"}">{URDF}')
+
+
+def test_extensions_are_let_through() -> None:
+    """What other programs keep in a URDF, and what enters no dynamics, whatever it says."""
+    more = (
+        '<gazebo reference="arm"><link name="x"><inertial/></link><mu1>0.5</mu1></gazebo>'
+        '<transmission name="t"><type>x</type><joint name="turn"><hardwareInterface>y</hardwareInterface></joint></transmission>'
+        '<material name="m"><color rgba="nope"/></material><?processing instruction?>'
+    )
+    link = '<visual><origin rpy="nan 0 0"/><geometry><box size="1m"/></geometry></visual><contact><friction value="1"/></contact>'
+    text = URDF.replace("</robot>", f"{more}</robot>").replace(
+        '<link name="hand"/>', f'<link name="hand">{link}</link>'
+    )
+    text = text.replace('effort="3"', 'effort="3" gear_velocity="10" current="1"')
+    text = text.replace("<axis", '<safety_controller k_velocity="x"/><calibration rising="y"/><axis')
+    assert rttrr_pin.load(text).link_names == ("arm", "hand")
+
+
+def test_limits_left_out_are_those_of_the_format() -> None:
+    """URDF: lower and upper default to 0; without <limit> there is none."""
+    limits = rttrr_pin.load(URDF.replace('upper="1" ', "")).model.joints[0].limits
+    assert (limits.lower, limits.upper) == (-1.0, 0.0)
+    limits = (
+        rttrr_pin.load(URDF.replace('<limit lower="-1" upper="1" velocity="2" effort="3"/>', "")).model.joints[0].limits
+    )
+    assert (limits.lower, limits.upper, limits.velocity) == (-np.inf, np.inf, np.inf)
+
+
+def test_axes_of_any_length_are_normalised() -> None:
+    for axis in ("0 0 1e300", "0 0 1e-300", "0 0 4.9e-324", "0 0 1.7e308"):
+        assert rttrr_pin.load(URDF.replace("0 0 2", axis)).model.joints[0].axis.tolist() == [0, 0, 1]
+    axis = rttrr_pin.load(URDF.replace("0 0 2", "3e200 0 4e200")).model.joints[0].axis
+    assert norm_error(axis, [0.6, 0.0, 0.8]) <= MODEL
+
+
+def test_lines_are_right_far_down_the_file() -> None:
+    """libxml2 counts lines in 16 bits, and beyond takes the line of the text behind the element."""
+    for more, off in ((60_000, 0), (70_000, 1)):
+        text = URDF.replace('<link name="hand"/>', "\n" * more + '<link name="hand"/>').replace("0 0 2", "0 0 0")
+        with pytest.raises(UrdfError, match="no direction") as caught:
+            rttrr_pin.load(text)
+        assert caught.value.line == 14 + more + off
+
+
+def test_large_robots_are_read_in_linear_time() -> None:
+    """A quadratic step over 3000 links, the root last, would take minutes."""
+    count = 3000
+    links = "".join(f'<link name="l{i}"/>' for i in range(1, count)) + '<link name="l0"/>'
+    joints = "".join(
+        f'<joint name="j{i}" type="fixed"><parent link="l{i}"/><child link="l{i + 1}"/></joint>'
+        for i in range(count - 1)
+    )
+    assert len(rttrr_pin.load(f'<robot name="long">{links}{joints}</robot>').link_names) == count - 1
+
+
+def test_long_attributes_are_read_in_linear_time() -> None:
+    """A regular expression that tries every split of these digits would take minutes."""
+    with pytest.raises(UrdfError, match="is not a decimal number"):
+        rttrr_pin.load(URDF.replace('value="1.5"', f'value="{"9" * 10**6}x"'))
+
+
+def test_long_chains_of_followers_are_refused() -> None:
+    """To follow each of them to its end would take time with the cube of their number: minutes, found by fuzzing."""
+    count = 3000
+    links = "".join(f'<link name="l{i}"/>' for i in range(count + 1))
+    joints = "".join(
+        f'<joint name="j{i}" type="revolute"><parent link="l0"/><child link="l{i + 1}"/><axis xyz="0 0 1"/>'
+        f'{f"""<mimic joint="j{i - 1}"/>""" if i else ""}</joint>'
+        for i in range(count)
+    )
+    with pytest.raises(UrdfError, match="through more than 100 joints"):
+        rttrr_pin.load(f'<robot name="many">{links}{joints}</robot>')

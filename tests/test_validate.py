@@ -9,13 +9,14 @@ from typing import Any
 import numpy as np
 import pytest
 
+import rttrr_pin
 from rttrr_pin import LinkWrenches, Robot, Wrench, oracles
 from rttrr_pin.arithmetic import Load
 from rttrr_pin.errors import InputError
 from rttrr_pin.model import QUANTITIES
 from rttrr_pin.oracles import Evaluation
 from rttrr_pin.oracles.pinocchio import PinocchioOracle
-from rttrr_pin.validate import Validation, compare_state, validate
+from rttrr_pin.validate import Sampler, Validation, compare_state, validate
 from tolerances import EPS, ROUNDING
 
 Spoil = Any
@@ -130,23 +131,74 @@ def test_a_payload_changes_the_torques_of_both_alike(rttrr: Robot) -> None:
     payload = Wrench((10, 20, 30), (1, 2, 3), expressed_in="base")
     assert validate(rttrr, 300, payload=payload).agrees
     loaded, bare = (compare_state(rttrr, 5, payload=p) for p in (payload, None))
-    assert np.abs(loaded.theirs.tau - bare.theirs.tau).min() > 0.1
+    assert not np.isclose(loaded.theirs.tau, bare.theirs.tau).any()
 
 
-def test_gravity_of_another_model_is_seen(rttrr: Robot) -> None:
-    """Pinocchio under 9.80665, ours under 9.81."""
-    oracle = PinocchioOracle(rttrr.model)
-    oracle.pin_model.gravity.linear = np.array([0, 0, -9.80665])
-    drawn = compare_state(rttrr, 0).states
-    theirs = oracle.evaluate(drawn.q, drawn.v, drawn.a).wrenches
-    ours = rttrr.inverse_dynamics(drawn.q, drawn.v, drawn.a)
-    assert np.abs(ours.F - theirs.F).max() > 1e-3
+def test_gravity_of_another_model_is_seen(rttrr: Robot, liar: type[Liar]) -> None:
+    """An oracle under 9.80665, ours under 9.81: every force differs."""
+
+    def spoil(result: LinkWrenches, q: np.ndarray) -> None:
+        oracle = PinocchioOracle(rttrr.model)
+        oracle.pin_model.gravity.linear = np.array([0, 0, -9.80665])
+        drawn = Sampler(rttrr.model).draw(0, len(q))
+        other = oracle.evaluate(drawn.q, drawn.v, drawn.a).wrenches
+        for key, x in other.items():
+            getattr(result, key)[:] = x
+
+    liar.spoil = staticmethod(spoil)
+    failed = outcome(validate(rttrr, 50, oracle="liar"))
+    assert {("F", f"link_{i}") for i in range(1, 6)} <= failed.keys()
+    assert not any(quantity == "N" for quantity, _ in failed)
+
+
+@pytest.mark.parametrize("number", ["mass", "com", "inertia", "p"])
+@pytest.mark.parametrize("link", [0, 2, 4])
+def test_an_error_of_1e_10_in_one_number_is_seen(rttrr: Robot, liar: type[Liar], number: str, link: int) -> None:
+    """One mass, centre of mass, tensor or placement of ours altered by a part in 1e10."""
+
+    def altered(x: Any) -> Any:
+        return x * (1 + 1e-10)
+
+    links, joints = list(rttrr.model.links), list(rttrr.model.joints)
+    if number == "p":
+        joints[link] = replace(joints[link], p=altered(joints[link].p))
+    else:
+        links[link] = replace(links[link], **{number: altered(getattr(links[link], number))})
+    other = replace(rttrr.model, links=tuple(links), joints=tuple(joints))
+
+    def spoil(result: LinkWrenches, q: np.ndarray) -> None:
+        drawn = Sampler(rttrr.model).draw(0, len(q))
+        for key, x in Robot(other).inverse_dynamics(drawn.q, drawn.v, drawn.a).items():
+            getattr(result, key)[:] = x
+
+    liar.spoil = staticmethod(spoil)
+    no_effect = number == "p" and link == 0  # a height on the axis of joint 1 enters nothing
+    assert validate(rttrr, 200, oracle="liar").agrees == no_effect
+
+
+@pytest.mark.parametrize("gravity", [(-1e200, 0, 0), (1e307, 1e307, 1e307)], ids=str)
+def test_numbers_that_no_norm_can_hold_are_no_verdict(gravity: tuple[float, ...]) -> None:
+    """Neither a disagreement nor an agreement within an infinite bound."""
+    with pytest.raises(InputError, match="in state 0, beyond 1e.140, which no norm can hold"):
+        validate(rttrr_pin.load("rttrr", gravity=gravity), 5)
+
+
+def test_a_robot_without_joints_is_no_agreement() -> None:
+    with pytest.raises(InputError, match="nothing to compare"):
+        validate(rttrr_pin.load('<robot name="x"><link name="a"/></robot>'), 5)
 
 
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
         ({"states": 0}, "states is 0.*from 1"),
+        ({"states": 2.5}, "states is 2.5 .float.: expected a whole number"),
+        ({"states": True}, "states is True .bool."),
+        ({"states": 10**30}, "states is 1000"),
+        ({"seed": None}, "seed is None"),
+        ({"payload": 3}, "payload is a int, expected a Wrench"),
+        ({"payload": (1, 2, 3)}, "payload is a tuple, expected a Wrench"),
+        ({"family": ["uniform"]}, "no family of states"),
         ({"states": -5}, "states is -5"),
         ({"payload": "heavy"}, "expected 'random' or a Wrench"),
         ({"payload": Wrench(np.zeros((4, 3)))}, "has a batch axis"),
@@ -160,9 +212,15 @@ def test_bad_arguments(rttrr: Robot, arguments: dict[str, Any], message: str) ->
         validate(rttrr, **{"states": 10} | arguments)
 
 
-def test_negative_state_is_an_error(rttrr: Robot) -> None:
-    with pytest.raises(InputError, match="counted from 0"):
-        compare_state(rttrr, -1)
+@pytest.mark.parametrize("index", [-1, 10**19, 1.5, True])
+def test_a_state_is_a_whole_number_from_0(rttrr: Robot, index: Any) -> None:
+    with pytest.raises(InputError, match="state is .*expected a whole number from 0"):
+        compare_state(rttrr, index)
+
+
+def test_a_robot_is_a_robot() -> None:
+    with pytest.raises(InputError, match=r"robot is a str: pass a Robot, such as rttrr_pin.load\('rttrr'\)"):
+        validate("rttrr")  # type: ignore[arg-type]
 
 
 def test_a_gap_of_zero_over_zero_is_zero(rttrr: Robot) -> None:
@@ -175,3 +233,11 @@ def test_a_gap_of_zero_over_zero_is_zero(rttrr: Robot) -> None:
 def test_rows_are_plain_data(rttrr: Robot) -> None:
     row = validate(rttrr, 10).rows[0]
     assert replace(row) == row
+
+
+@pytest.mark.parametrize("quantity", QUANTITIES)
+def test_the_error_over_all_links_is_the_norm_of_the_whole(rttrr: Robot, quantity: str) -> None:
+    seen = validate(rttrr, 700, seed=2).whole[quantity]
+    one = compare_state(rttrr, seen.state, seed=2)
+    mine, theirs = (getattr(x, quantity)[0] for x in (one.ours, one.theirs))
+    assert abs(seen.value - np.linalg.norm(mine - theirs) / np.linalg.norm(theirs) / EPS) <= ROUNDING * seen.value

@@ -23,6 +23,10 @@ URDF_DIGITS = 1e-5
 NINE_DIGITS = 5e-9
 """Arrays published as NumPy prints them, to nine or more significant digits: half a unit of the ninth."""
 
+CONSUMER = 1e-9
+"""What another program made of a file's masses and inertias: MuJoCo stops diagonalising at 4e-12, and what it or Drake
+alters, it alters by a percent or more."""
+
 EXACT = 0.0
 """The same operations in the same order: the same bits."""
 

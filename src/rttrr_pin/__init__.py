@@ -8,9 +8,9 @@
 from __future__ import annotations
 
 from rttrr_pin.errors import RttrrError
-from rttrr_pin.model import LinkWrenches, Wrench
-from rttrr_pin.robot import Robot, load
+from rttrr_pin.model import Drive, LinkWrenches, Wrench
+from rttrr_pin.robot import Robot, load, load_all
 
 __version__ = "0.1.0"
 
-__all__ = ["LinkWrenches", "Robot", "RttrrError", "Wrench", "__version__", "load"]
+__all__ = ["Drive", "LinkWrenches", "Robot", "RttrrError", "Wrench", "__version__", "load", "load_all"]

@@ -10,13 +10,15 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import islice
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rttrr_pin.algebra import Matrix, Scalar, Vector
-from rttrr_pin.model import Joint, Link, Model
-from rttrr_pin.newton_euler import Body, Payload, SinCos, Wrenches, newton_euler
+from rttrr_pin.joint_motion import Body, JointState, SinCos
+from rttrr_pin.model import Joint, Link, Mimic, Model
+from rttrr_pin.newton_euler import Payload, newton_euler
 
 Array = NDArray[np.float64]
 
@@ -27,7 +29,7 @@ ROTATION_ERROR = 8 * UNIT_ROUNDOFF
 """Of an entry of a rotation matrix made from rpy: a sum of two products of sines and cosines, each within an ulp."""
 
 AXIS_ERROR = 4 * UNIT_ROUNDOFF
-"""Of a component of an axis that was divided by its length."""
+"""Relative, of a component of an axis that was divided by its length."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,11 +40,13 @@ class Arithmetic:
         number: from a float of the model, and a bound on how far rounding took it from what the file says.
         column: from the values of one coordinate: a float (one state) or an array (a batch).
         sincos: sine and cosine of such a column.
+        sign: -1, 0 or 1 by the sign of a scalar's value.
     """
 
     number: Callable[[float, float], Scalar]
     column: Callable[[float | Array], Scalar]
     sincos: SinCos
+    sign: Callable[[Scalar], Scalar]
 
 
 def _float_sincos(q: float | Array) -> tuple[float | Array, float | Array]:
@@ -52,7 +56,9 @@ def _float_sincos(q: float | Array) -> tuple[float | Array, float | Array]:
     return np.sin(q), np.cos(q)
 
 
-FLOAT = Arithmetic(number=lambda value, error: value, column=lambda values: values, sincos=_float_sincos)
+FLOAT = Arithmetic(
+    number=lambda value, error: value, column=lambda values: values, sincos=_float_sincos, sign=lambda x: np.sign(x)
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,28 +89,100 @@ def bodies(model: Model, arithmetic: Arithmetic) -> list[Body]:
     return [_body(*pair, arithmetic) for pair in zip(model.joints, model.links, strict=True)]
 
 
-def evaluate(
-    model: Model, arithmetic: Arithmetic, q: Array, v: Array, a: Array, loads: Sequence[Load] = ()
-) -> Wrenches:
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What the specification yields, in scalars of one kind.
+
+    Attributes:
+        tau: driving force of each degree of freedom: what crosses the joint along it, plus `tau_joint`.
+        tau_joint: the part that the joint itself takes (armature, friction).
+        F, N, f, n: of each link, in {i}.
+    """
+
+    tau: list[Scalar]
+    tau_joint: list[Scalar]
+    F: list[Vector]
+    N: list[Vector]
+    f: list[Vector]
+    n: list[Vector]
+
+
+def evaluate(model: Model, arithmetic: Arithmetic, q: Array, v: Array, a: Array, loads: Sequence[Load] = ()) -> Result:
     """The specification on a batch.
 
     Args:
         model: the robot.
         arithmetic: the kind of scalar.
-        q: coordinates, (N, nv) [rad or m]; one state, (1, nv), is computed with Python floats.
+        q: coordinates, (N, nq) [rad or m]; one state, (1, nq), is computed with Python floats.
         v: rates, (N, nv).
         a: accelerations, (N, nv).
         loads: payloads.
 
     Returns:
-        tau, F, N, f, n in scalars of that kind; what no state changes may be a plain number.
+        The five quantities in scalars of that kind; what no state changes may be a plain number.
     """
-    q_, v_, a_ = ([arithmetic.column(column) for column in _columns(x)] for x in (q, v, a))
+    states = _joint_states(model, arithmetic, q, v, a)
     payloads = [
         Payload(load.link, _vector(load.f, arithmetic), _vector(load.n, arithmetic), load.in_base) for load in loads
     ]
     gravity = Vector.of(model.gravity, lambda value: arithmetic.number(value, 0.0))
-    return newton_euler(bodies(model, arithmetic), q_, v_, a_, gravity, payloads, arithmetic.sincos)
+    result = newton_euler(bodies(model, arithmetic), states, gravity, payloads, arithmetic.sincos)
+    own = [_drive(joint, state, arithmetic) for joint, state in zip(model.joints, states, strict=True)]
+    across, tau_joint = (_generalised(model, arithmetic, forces) for forces in (result.tau, own))
+    tau = [x + y for x, y in zip(across, tau_joint, strict=True)]
+    return Result(tau, tau_joint, result.F, result.N, result.f, result.n)
+
+
+def _joint_states(model: Model, arithmetic: Arithmetic, q: Array, v: Array, a: Array) -> list[JointState]:
+    """The columns of q, v, a by joint; a joint that follows another has its columns made from that one's."""
+    q_, v_, a_ = (iter([arithmetic.column(column) for column in _columns(x)]) for x in (q, v, a))
+    own: dict[int, JointState] = {}
+    for i in model.independent:
+        nq, nv = model.joints[i].nq, model.joints[i].nv
+        own[i] = JointState(list(islice(q_, nq)), list(islice(v_, nv)), list(islice(a_, nv)))
+    at_rest = JointState((), (), ())
+    return [
+        own.get(i, at_rest) if joint.mimic is None else _following(joint.mimic, own[joint.mimic.joint], arithmetic)
+        for i, joint in enumerate(model.joints)
+    ]
+
+
+def _following(mimic: Mimic, master: JointState, arithmetic: Arithmetic) -> JointState:
+    """Q = multiplier q_master + offset, and its time derivatives."""
+    rounded = UNIT_ROUNDOFF if mimic.rounded else 0.0
+    multiplier, offset = (arithmetic.number(x, rounded * abs(x)) for x in (mimic.multiplier, mimic.offset))
+    (q,), (v,), (a,) = master.q, master.v, master.a
+    return JointState([q * multiplier + offset], [v * multiplier], [a * multiplier])
+
+
+def _drive(joint: Joint, state: JointState, arithmetic: Arithmetic) -> list[Scalar]:
+    """Armature a + damping v + friction sign(v) for each degree of freedom; 0 where the joint has none of them."""
+    drive = joint.drive
+    parts = []
+    for v, a in zip(state.v, state.a, strict=True):
+        force: Scalar = 0
+        if drive.armature:
+            force = a * arithmetic.number(drive.armature, 0.0) + force
+        if drive.damping:
+            force = v * arithmetic.number(drive.damping, 0.0) + force
+        if drive.friction:
+            force = arithmetic.sign(v) * arithmetic.number(drive.friction, 0.0) + force
+        parts.append(force)
+    return parts
+
+
+def _generalised(model: Model, arithmetic: Arithmetic, forces: Sequence[Sequence[Scalar]]) -> list[Scalar]:
+    """Forces of all joints as forces of the independent ones: what drives a joint also drives those that follow it.
+
+    By virtual work a joint that follows with multiplier m adds m times its own force.
+    """
+    total = {i: list(forces[i]) for i in model.independent}
+    for i, joint in enumerate(model.joints):
+        if joint.mimic is not None:
+            rounded = UNIT_ROUNDOFF if joint.mimic.rounded else 0.0
+            multiplier = arithmetic.number(joint.mimic.multiplier, rounded * abs(joint.mimic.multiplier))
+            total[joint.mimic.joint][0] = total[joint.mimic.joint][0] + forces[i][0] * multiplier
+    return [force for i in model.independent for force in total[i]]
 
 
 def _body(joint: Joint, link: Link, arithmetic: Arithmetic) -> Body:
@@ -120,7 +198,7 @@ def _body(joint: Joint, link: Link, arithmetic: Arithmetic) -> Body:
     return Body(
         parent=joint.parent,
         type=joint.type,
-        axis=Vector.of(joint.axis, number(normalised)),
+        axis=Vector.of(joint.axis, lambda value: arithmetic.number(value, normalised * abs(value))),
         R=Matrix.of(joint.R, number(turned)),
         p=Vector.of(joint.p, number(0.0)),
         M=arithmetic.number(link.mass, 0.0),

@@ -12,13 +12,15 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
+from rttrr_pin.commands.inspect import inspect
+from rttrr_pin.commands.new import new
 from rttrr_pin.commands.output import AGREE, DISAGREE, INTERRUPTED, UNUSABLE, discard_stdout
 from rttrr_pin.commands.validate import validate
 
 UsageError: Any = typer.BadParameter.__base__
 """Typer brings its own copy of click and does not export this class."""
 
-COMMANDS: tuple[Callable[..., int], ...] = (validate,)
+COMMANDS: tuple[Callable[..., int], ...] = (validate, inspect, new)
 """A new command is a module in `commands` and an entry here."""
 
 app = typer.Typer(
@@ -74,7 +76,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code = UNUSABLE
     except (typer.Abort, KeyboardInterrupt):  # by its version, Typer raises or returns the code
         code = INTERRUPTED
-    except BrokenPipeError:
+    except BrokenPipeError:  # before a verdict, as in --help
         discard_stdout()
         code = AGREE
     if code == INTERRUPTED:

@@ -120,11 +120,24 @@ class ModelMismatchError(OracleError):
         )
 
 
+LONGEST, MOST = 200, 2000
+"""Characters of a name, and names, that similar ones are looked for among: the search is quadratic in both."""
+
+
+def shortened(text: str) -> str:
+    """Text that may be long by mistake, as a message can show it."""
+    return text if len(text) <= LONGEST else f"{text[: LONGEST - 40]}... ({len(text)} characters)"
+
+
 def nearest(got: object, known: Iterable[str]) -> str:
     """The hint that follows an unknown name: the closest names that exist, or all of them where none is close."""
     names = list(known)
-    close = get_close_matches(str(got), names, n=3, cutoff=0.5)
+    close = get_close_matches(
+        str(got)[:LONGEST], [name for name in names[:MOST] if len(name) <= LONGEST], n=3, cutoff=0.5
+    )
     if close:
         return "did you mean " + " or ".join(close) + "?"
-    shown = ", ".join(names[:12]) + (f", ... ({len(names)} in all)" if len(names) > 12 else "")
+    shown = ", ".join(shortened(name) for name in names[:12]) + (
+        f", ... ({len(names)} in all)" if len(names) > 12 else ""
+    )
     return f"there are {shown}" if names else "there are none"

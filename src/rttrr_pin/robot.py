@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import fields, replace
 from pathlib import Path
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rttrr_pin.algebra import Scalar, Vector
 from rttrr_pin.arithmetic import FLOAT, Load, evaluate
-from rttrr_pin.errors import InputError, NumberError, ShapeError
-from rttrr_pin.model import STANDARD_GRAVITY, LinkWrenches, Model, Wrench
-from rttrr_pin.model.inputs import Coordinates, coordinates, vectors
-from rttrr_pin.newton_euler import Wrenches
+from rttrr_pin.batch import RESULTS, batch_shape, blocks, check_overflow, empty_wrenches, fill, flat
+from rttrr_pin.errors import InputError, NumberError, ShapeError, UnknownNameError
+from rttrr_pin.model import STANDARD_GRAVITY, Drive, LinkWrenches, Model, Wrench
+from rttrr_pin.model.inputs import Coordinates, coordinates, finite, real, vectors
+from rttrr_pin.model.sources import AnySource, robots_in
+
+if TYPE_CHECKING:
+    from rttrr_pin.inspect import Inspection
 
 Array = NDArray[np.float64]
-
-BLOCK = 4096
-"""States computed at a time: the temporaries of one block stay in the cache, and memory does not grow with N."""
 
 
 class Robot:
@@ -64,11 +66,15 @@ class Robot:
             N_i = I_i w_dot_i + w_i x I_i w_i               (23-30)
             f_i = F_i + sum over children c of R_ic f_c     (31-43)
             n_i = N_i + r_Ci x F_i + sum over c of (R_ic n_c + p_ic x R_ic f_c)
-            tau_i = n_i (revolute) or f_i (prismatic) along the axis
+            tau_i = n_i (revolute) or f_i (prismatic) along the axis, plus tau_joint (see `Drive`)
+
+        A joint that follows another (<mimic>) has no coordinate of its own; what drives it is part of the other's tau,
+        times the multiplier.
 
         Args:
-            q: joint coordinates, (..., nv) [rad or m], or a dict by joint name.
-            v: joint rates, (..., nv) [rad/s or m/s].
+            q: joint coordinates, (..., nq) [rad or m], or a dict by joint name. nq is nv, but for floating joints,
+                which have x, y, z and a unit quaternion (x, y, z, w); continuous joints take their angle.
+            v: joint rates, (..., nv) [rad/s or m/s]; of a planar or floating joint the twist in {i}.
             a: joint accelerations, (..., nv) [rad/s^2 or m/s^2].
             payload: what the robot exerts on its surroundings; several where several links do. Leading axes
                 broadcast with those of q, v, a.
@@ -81,26 +87,90 @@ class Robot:
             NumberError: a value is NaN, inf, complex, ..., or so large that the result overflows.
             UnknownNameError, MissingJointError: a dict's keys, or the payload's link, do not exist.
         """
-        arrays = [coordinates(name, x, self.joint_names) for name, x in zip("qva", (q, v, a), strict=True)]
+        arrays = [coordinates(name, x, self.model.moving) for name, x in (("q", q), ("v", v), ("a", a))]
         loads = [self.load_of(wrench) for wrench in _as_list(payload)]
-        batch = _batch_shape(arrays, loads)
+        batch = batch_shape(arrays, loads)
         rows = int(np.prod(batch, dtype=np.int64))
         q_, v_, a_ = (np.broadcast_to(x, (*batch, x.shape[-1])).reshape(rows, x.shape[-1]) for x in arrays)
-        flat_loads = [_flat(load, batch, rows) for load in loads]
+        flat_loads = [flat(load, batch, rows) for load in loads]
         out = empty_wrenches(self.model, rows)
         for part in blocks(rows):
             states = (q_[part], v_[part], a_[part])
             with np.errstate(over="ignore", invalid="ignore"):  # looked for below, where the state can be named
                 result = evaluate(self.model, FLOAT, *states, [load.block(part) for load in flat_loads])
             fill(out, part, result)
-        _check_overflow(out, q_, v_, a_)
-        shaped = {key: x.reshape(*batch, *x.shape[1:]) for key, x in out.items()}
-        return LinkWrenches.of(shaped, self.link_names, self.joint_names)
+        check_overflow(out, q_, v_, a_)
+        shaped = {key: getattr(out, key).reshape(*batch, *getattr(out, key).shape[1:]) for key in RESULTS}
+        return LinkWrenches.of(shaped, self.link_names, self.model.v_names)
 
     def load_of(self, wrench: Wrench) -> Load:
-        """A user's wrench at the index of its link."""
+        """A user's wrench at the index of its link.
+
+        Raises:
+            InputError: it is no wrench, or names no link where there are several last ones.
+            UnknownNameError: no link is called so.
+            ShapeError, NumberError: its force or moment is no vector of finite numbers.
+        """
+        if not isinstance(wrench, Wrench):
+            raise InputError(
+                f"payload is a {type(wrench).__name__}, expected a Wrench: pass Wrench(force=..., moment=...)"
+            )
         f, n = vectors("payload force", wrench.force), vectors("payload moment", wrench.moment)
         return Load(self.payload_link(wrench.link), f, n, wrench.expressed_in == "base")
+
+    def with_drives(self, drives: Mapping[str, Drive]) -> Robot:
+        """The same robot, whose joints take torque themselves.
+
+        Args:
+            drives: by joint name: armature (rotor inertia times gear ratio squared), damping, Coulomb friction. Joints
+                left out keep what they have.
+
+        Returns:
+            A robot whose tau contains tau_joint = armature a + damping v + friction sign(v); f and n are the same.
+
+        Raises:
+            UnknownNameError: no joint that moves is called so.
+            NumberError: a number is not finite, or is negative.
+        """
+        moving = [joint.name for joint in self.model.joints if joint.nv]
+        for name, drive in drives.items():
+            if name not in moving:
+                raise UnknownNameError("moving joint", name, moving)
+            if not isinstance(drive, Drive):
+                raise InputError(f"the drive of joint {name!r} is a {type(drive).__name__}: pass Drive(armature=...)")
+            for field in fields(drive):
+                label = f"{field.name} of joint {name!r}"
+                value = finite(label, real(label, getattr(drive, field.name)))
+                if value.ndim or value < 0.0:
+                    raise NumberError(
+                        f"{label} is {getattr(drive, field.name)}: expected one number that is not negative",
+                        name=field.name,
+                        joint=name,
+                        value=getattr(drive, field.name),
+                    )
+        joints = tuple(replace(joint, drive=drives.get(joint.name, joint.drive)) for joint in self.model.joints)
+        return Robot(replace(self.model, joints=joints))
+
+    def inspect(
+        self, folder: str | os.PathLike[str] | None = None, select: Iterable[str] = (), ignore: Iterable[str] = ()
+    ) -> Inspection:
+        """Look at the file behind the robot: tree, bodies, findings, and what other programs do with it.
+
+        Args:
+            folder: where the file lies, to find its meshes from; None leaves meshes unread.
+            select: prefixes of the ids of the checks to run (see docs/inspect.md); none means all.
+            ignore: prefixes of ids to leave out.
+
+        Returns:
+            The inspection; masses in kg, lengths in m, inertias in kg m^2.
+
+        Raises:
+            InputError: the robot was made from numbers and has no file.
+            UnknownNameError: a prefix fits no check.
+        """
+        from rttrr_pin.inspect import inspect
+
+        return inspect(self.model.urdf, self.name, None if folder is None else Path(folder), select, ignore)
 
     def payload_link(self, name: str | None) -> int:
         """The index of the link that a payload acts at; for None the only last link.
@@ -121,20 +191,31 @@ class Robot:
         )
 
 
-def load(source: str | os.PathLike[str], gravity: ArrayLike = STANDARD_GRAVITY) -> Robot:
+def load(
+    source: AnySource,
+    gravity: ArrayLike = STANDARD_GRAVITY,
+    base: Literal["fixed", "floating"] = "fixed",
+    friction: bool = False,
+) -> Robot:
     """Load a robot.
 
     Args:
-        source: the name of a bundled robot (`"rttrr"`), or the path of a URDF file.
+        source: the name of a bundled robot (`"rttrr"`) or of an example robot (`"example:panda"`, with the extra
+            `robots`); the path of a URDF, of a xacro file (with the extra `xacro`), or of a folder with one of them;
+            the text of a URDF; or a `yourdfpy.URDF`.
         gravity: the gravity field in the base frame, (3,) [m/s^2]: a free body accelerates by it.
+        base: `"floating"` puts the root link on a floating joint (Pinocchio's `root_joint`): seven more coordinates,
+            position and quaternion (x, y, z, w), and six more rates, the twist in the root link's frame.
+        friction: whether damping and friction of `<dynamics>` take part in tau. Pinocchio's `rnea` leaves them out.
 
     Returns:
         The robot, its links and joints in Pinocchio's order for the same file.
 
     Raises:
-        UnknownNameError: there is neither such a file nor such a bundled robot.
+        UnknownNameError: there is neither such a file nor such a bundled robot, or no such example robot.
         UrdfError: the file cannot be used; the message says where and why.
         ShapeError, NumberError: gravity is no vector of three finite numbers.
+        InputError: the source is of another type, an extra is missing, or base is neither "fixed" nor "floating".
     """
     from rttrr_pin.model.urdf import read_urdf  # loads yourdfpy, which takes a second
 
@@ -146,83 +227,40 @@ def load(source: str | os.PathLike[str], gravity: ArrayLike = STANDARD_GRAVITY) 
             got=field.shape,
             wanted="(3,)",
         )
-    return Robot(read_urdf(source if isinstance(source, str) else Path(source)).with_gravity(field))
+    if base not in ("fixed", "floating"):
+        raise InputError(f"base is {base!r}: expected 'fixed' (bolted down) or 'floating'")
+    model = read_urdf(source).with_gravity(field)
+    if base == "floating":
+        model = model.with_floating_base()
+    return Robot(model if friction else model.without_drives())
 
 
-def blocks(rows: int, size: int = BLOCK) -> Iterator[slice]:
-    """Consecutive slices that cover a batch."""
-    return (slice(start, min(start + size, rows)) for start in range(0, rows, size))
+def load_all(
+    folder: str | os.PathLike[str],
+    gravity: ArrayLike = STANDARD_GRAVITY,
+    base: Literal["fixed", "floating"] = "fixed",
+    friction: bool = False,
+) -> dict[str, Robot]:
+    """Load every robot in a folder and below.
 
+    Args:
+        folder: a folder with `.urdf` and `.xacro` files.
+        gravity: as in `load`.
+        base: as in `load`.
+        friction: as in `load`.
 
-def empty_wrenches(model: Model, rows: int) -> LinkWrenches:
-    """Arrays for the results of a batch, not yet filled."""
-    spatial = (rows, len(model.links), 3)
-    arrays = {"tau": np.empty((rows, model.nv)), **{key: np.empty(spatial) for key in "FNfn"}}
-    return LinkWrenches.of(arrays, model.link_names, model.joint_names)
+    Returns:
+        The robots by the paths of their files from the folder, such as `"arms/panda.urdf"`.
 
-
-def fill(out: LinkWrenches, part: slice, result: Wrenches) -> None:
-    """Write the scalars of one block into the arrays of the batch."""
-    _fill_columns(out.tau[part], result.tau)
-    for key in ("F", "N", "f", "n"):
-        vectors_: list[Vector] = getattr(result, key)
-        for i, vector in enumerate(vectors_):
-            _fill_columns(getattr(out, key)[part, i], list(vector))
-
-
-def _fill_columns(out: Array, scalars: Sequence[Scalar]) -> None:
-    for column, scalar in enumerate(scalars):
-        out[:, column] = scalar
+    Raises:
+        UrdfError: it is no folder, it holds no such file, or one of them cannot be used.
+        ShapeError, NumberError, InputError: as in `load`.
+    """
+    return {name: load(path, gravity, base, friction) for name, path in robots_in(folder).items()}
 
 
 def _as_list(payload: Wrench | Sequence[Wrench] | None) -> list[Wrench]:
     """None, one or several wrenches as a list."""
     if payload is None:
         return []
-    wrenches = [payload] if isinstance(payload, Wrench) else list(payload)
-    for wrench in wrenches:
-        if not isinstance(wrench, Wrench):
-            raise InputError(
-                f"payload is a {type(wrench).__name__}, expected a Wrench: pass Wrench(force=..., moment=...)"
-            )
-    return wrenches
-
-
-def _batch_shape(arrays: Sequence[Array], loads: Sequence[Load]) -> tuple[int, ...]:
-    """The common leading shape."""
-    named = dict(zip("qva", (x.shape[:-1] for x in arrays), strict=True))
-    for load in loads:
-        named[f"payload force at link {load.link + 1}"] = load.f.shape[:-1]
-        named[f"payload moment at link {load.link + 1}"] = load.n.shape[:-1]
-    try:
-        return np.broadcast_shapes(*named.values())
-    except ValueError:
-        shapes = ", ".join(f"{name}: {shape}" for name, shape in named.items())
-        raise ShapeError(
-            f"the leading axes do not broadcast ({shapes}): give all the same batch shape",
-            name="q, v, a",
-            got=(),
-            wanted="leading axes that broadcast",
-        ) from None
-
-
-def _flat(load: Load, batch: tuple[int, ...], rows: int) -> Load:
-    """The load with the batch on one axis."""
-    f, n = (x if x.ndim == 1 else np.broadcast_to(x, (*batch, 3)).reshape(rows, 3) for x in (load.f, load.n))
-    return Load(load.link, f, n, load.in_base)
-
-
-def _check_overflow(out: LinkWrenches, q: Array, v: Array, a: Array) -> None:
-    """Finite inputs whose results are not finite have overflowed; say where."""
-    for key, x in out.items():
-        if not np.isfinite(x).all():
-            row = int(np.argwhere(~np.isfinite(x))[0][0])
-            sizes = {name: float(np.abs(y[row]).max(initial=0.0)) for name, y in (("q", q), ("v", v), ("a", a))}
-            largest = max(sizes, key=sizes.__getitem__)
-            raise NumberError(
-                f"{key} overflows in state {row}, where |{largest}| reaches {sizes[largest]:.3g}: "
-                "pass coordinates of a size that a robot can have, in rad, m and s",
-                name=largest,
-                index=(row,),
-                value=sizes[largest],
-            )
+    return [payload] if isinstance(payload, Wrench) or not isinstance(payload, Sequence) else list(payload)

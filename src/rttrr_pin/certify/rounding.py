@@ -97,7 +97,7 @@ def _number(value: float, error: float) -> Scalar:
     """A number of the model; an exact 0, 1 or -1 stays a plain integer, so that products with it are exact."""
     if error == 0.0 and value in (0.0, 1.0, -1.0):
         return int(value)
-    return Bounded(value, error if value else 0.0)
+    return Bounded(value, error)
 
 
 def _sincos(q: Bounded) -> tuple[Bounded, Bounded]:
@@ -108,7 +108,12 @@ def _sincos(q: Bounded) -> tuple[Bounded, Bounded]:
     return Bounded(s, q.bound + ulps * abs(s)), Bounded(c, q.bound + ulps * abs(c))
 
 
-BOUNDED = Arithmetic(number=_number, column=lambda values: Bounded(values, 0.0), sincos=_sincos)
+BOUNDED = Arithmetic(
+    number=_number,
+    column=lambda values: Bounded(values, 0.0),
+    sincos=_sincos,
+    sign=lambda x: Bounded(np.sign(x.value), 0.0),  # of rates, whose sign is that of an exact double
+)
 
 
 def bounded_dynamics(
@@ -130,12 +135,13 @@ def bounded_dynamics(
     rows = len(q)
     result = evaluate(model, BOUNDED, q, v, a, loads)
     values, bounds = {}, {}
-    values["tau"], bounds["tau"] = _columns(result.tau, rows)
+    for key in ("tau", "tau_joint"):
+        values[key], bounds[key] = _columns(getattr(result, key), rows)
     for key in ("F", "N", "f", "n"):
         vectors: list[Vector] = getattr(result, key)
         value, bound = _columns([scalar for vector in vectors for scalar in vector], rows)
         values[key], bounds[key] = value.reshape(rows, -1, 3), bound.reshape(rows, -1, 3)
-    links, joints = model.link_names, model.joint_names
+    links, joints = model.link_names, model.v_names
     return LinkWrenches.of(values, links, joints), LinkWrenches.of(bounds, links, joints)
 
 

@@ -33,10 +33,10 @@ def discard_stdout() -> None:
 
 
 @contextmanager
-def progress(total: int, quiet: bool) -> Iterator[Any]:
-    """A function to call with the states done; it shows a bar on stderr once the run has lasted a second."""
+def progress(total: int, quiet: bool, what: str = "states") -> Iterator[Any]:
+    """A function to call with the number done; it shows a bar on stderr once the run has lasted a second."""
     started = time.monotonic()
-    columns = (TextColumn("{task.completed:,} of {task.total:,} states"), BarColumn(), TimeRemainingColumn())
+    columns = (TextColumn("{task.completed:,} of {task.total:,} " + what), BarColumn(), TimeRemainingColumn())
     bar = Progress(*columns, console=Console(stderr=True), transient=True)
     shown: list[TaskID] = []
 
@@ -61,6 +61,10 @@ def write_json(target: str | None, data: Callable[[], dict[str, Any]]) -> None:
     from rttrr_pin import report
 
     if target == "-":
-        sys.stdout.write(report.as_json(data()))
+        try:
+            sys.stdout.write(report.as_json(data()))
+            sys.stdout.flush()
+        except BrokenPipeError:
+            discard_stdout()
     elif target is not None:
         report.write_whole(Path(target), report.as_json(data()))

@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 import shlex
-import sys
-from collections.abc import Sequence
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Annotated, Any, Literal
 
 import typer
 
-from rttrr_pin.commands.output import AGREE, DISAGREE, Output, progress, write_json
+from rttrr_pin.commands.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json
 
 
 def validate(
-    robot: Annotated[str, typer.Argument(help="A bundled robot's name, or the path of a URDF.")] = "rttrr",
+    robot: Annotated[
+        str,
+        typer.Argument(
+            help="A bundled robot's name, the path of a URDF, or example:NAME; several at once: a folder, example:all."
+        ),
+    ] = "rttrr",
     states: Annotated[int, typer.Option(help="How many states to compare.")] = 10_000,
     seed: Annotated[int, typer.Option(help="The same seed gives the same states.")] = 0,
     family: Annotated[
@@ -33,6 +39,10 @@ def validate(
     gravity: Annotated[
         str | None, typer.Option(help="Gravity field gx,gy,gz in the base frame [m/s^2]; without it 0,0,-9.81.")
     ] = None,
+    base: Annotated[str, typer.Option(help="fixed (bolted down) or floating.")] = "fixed",
+    friction: Annotated[
+        bool, typer.Option("--friction", help="Take damping and friction of <dynamics> into tau.")
+    ] = False,
     oracle: Annotated[str, typer.Option(help="The program to compare with.")] = "pinocchio",
     state: Annotated[int | None, typer.Option(help="Print this one state in full, ours beside the oracle's.")] = None,
     json: Annotated[str | None, typer.Option(help="Write the outcome as JSON to this file; '-' is stdout.")] = None,
@@ -41,13 +51,33 @@ def validate(
 ) -> int:
     """Compare our recursion with Pinocchio's on random states: tau, F, N, f, n at every joint and link.
 
-    Exit code: 0 agree, 1 disagree, 2 unusable input.
+    Several robots each go through a fixed and a floating base, and those that cannot be compared are listed with what
+    in their file stops them.
+
+    Exit code: 0 agree, 1 disagree, 2 unusable input (of several robots, at least one).
     """
     import rttrr_pin
     from rttrr_pin import report
     from rttrr_pin import validate as validation
 
-    loaded = rttrr_pin.load(robot, **({} if gravity is None else {"gravity": _numbers("--gravity", gravity, 3)}))
+    several = _several(robot)
+    if several:
+        one_robot = {
+            "--state": state is not None,
+            "--payload": payload is not None,
+            "--payload-link": payload_link is not None,
+            "--payload-axes": payload_axes != "link",
+            "--gravity": gravity is not None,
+            "--base": base != "fixed",
+            "--friction": friction,
+            "--full": full,
+        }
+        _refuse([option for option, given in one_robot.items() if given])
+        return _validate_several(several, validation.Task(states, seed, family, oracle), json, quiet)
+    loading: dict[str, Any] = {"base": base, "friction": friction}
+    if gravity is not None:
+        loading["gravity"] = _numbers("--gravity", gravity, 3)
+    loaded = rttrr_pin.load(robot, **loading)
     chosen: dict[str, Any] = {
         "seed": seed,
         "family": family,
@@ -63,8 +93,52 @@ def validate(
     with progress(states, quiet) as advance:
         result = validation.validate(loaded, states, **chosen, progress=advance)
     write_json(json, lambda: report.validation_data(result))
-    report.show_validation(result, console, _rerun(sys.argv[1:]), full)
+    again = {
+        "--seed": seed or None,
+        "--family": family if family != "uniform" else None,
+        "--payload": payload,
+        "--payload-link": payload_link,
+        "--payload-axes": payload_axes if payload_axes != "link" else None,
+        "--gravity": gravity,
+        "--base": base if base != "fixed" else None,
+        "--oracle": oracle if oracle != "pinocchio" else None,
+    }
+    report.show_validation(result, console, _rerun(robot, again, friction), full)
     return AGREE if result.agrees else DISAGREE
+
+
+def _several(robot: str) -> dict[str, Path]:
+    """The files of `example:all` or of a folder that holds more than one; none where one robot is meant."""
+    from rttrr_pin.model.sources import EXAMPLE, examples, robots_in
+
+    if not robot.strip():
+        return {}
+    if robot == f"{EXAMPLE}all":
+        return examples()
+    found = robots_in(robot) if Path(robot).is_dir() else {}
+    return found if len(found) > 1 else {}
+
+
+def _refuse(options: Sequence[str]) -> None:
+    from rttrr_pin.errors import InputError
+
+    if options:
+        raise InputError(f"{', '.join(options)} goes with one robot, and several are named: name one, or leave it out")
+
+
+def _validate_several(sources: dict[str, Path], task: Any, json: str | None, quiet: bool) -> int:
+    """One table for many robots."""
+    from rttrr_pin import report
+    from rttrr_pin import validate as validation
+
+    start = time.perf_counter()
+    with progress(len(sources) * len(validation.BASES), quiet, "runs") as advance:
+        entries = validation.validate_many(sources, task, progress=advance)
+    seconds = time.perf_counter() - start
+    write_json(json, lambda: report.many_data(entries, task, seconds))
+    report.show_many(entries, task, seconds, Output(quiet=quiet or json == "-"))
+    verdicts = {entry.verdict for entry in entries}
+    return DISAGREE if "disagree" in verdicts else UNUSABLE if "unusable" in verdicts else AGREE
 
 
 def _payload(text: str | None, link: str | None, axes: str) -> Any:
@@ -86,18 +160,20 @@ def _payload(text: str | None, link: str | None, axes: str) -> Any:
 def _numbers(option: str, text: str, count: int) -> list[float]:
     """Numbers separated by commas or blanks."""
     from rttrr_pin.errors import InputError
+    from rttrr_pin.model.strict import NUMBER
 
     words = text.replace(",", " ").split()
-    try:
-        numbers = [float(word) for word in words]
-    except ValueError:
-        numbers = []
+    numbers = [float(word) for word in words] if all(NUMBER.fullmatch(word) for word in words) else []
     if len(numbers) != count:
         example = ",".join("0" for _ in range(count))
         raise InputError(f"{option} is {text!r}: expected {count} numbers separated by commas, such as {example}")
     return numbers
 
 
-def _rerun(words: Sequence[str]) -> str:
-    """The command that was run, to which --state can be added."""
-    return shlex.join(["rttrr-pin", *words])
+def _rerun(robot: str, options: Mapping[str, object], friction: bool) -> str:
+    """The command that draws the same states, to which --state can be added."""
+    words = ["rttrr-pin", "validate", *([robot] if robot != "rttrr" else [])]
+    for option, value in options.items():
+        if value is not None:
+            words += [option, str(value)]
+    return shlex.join([*words, "--friction"] if friction else words)

@@ -8,45 +8,55 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rttrr_pin.errors import MissingJointError, NumberError, ShapeError, UnknownNameError
+from rttrr_pin.errors import InputError, MissingJointError, NumberError, ShapeError, UnknownNameError
+from rttrr_pin.model.joint import Joint, JointType
 
 Array = NDArray[np.float64]
 
 Coordinates: TypeAlias = ArrayLike | Mapping[str, ArrayLike]
 """An array with the joints on its last axis, or a dict with one entry for each joint."""
 
+UNIT_QUATERNION = 1e-12
+"""How far the squared length of a quaternion may be from 1; what float64 normalised is within 1e-15."""
+
 EXACT_INTEGER = 2**53
 """Integers beyond it have no float64 of their own."""
 
 
-def coordinates(name: str, values: Coordinates, joints: Sequence[str]) -> Array:
+def coordinates(name: str, values: Coordinates, joints: Sequence[Joint]) -> Array:
     """One of q, v, a as float64.
 
     Args:
-        name: what it is, for messages.
-        values: an array (..., n), or a dict from joint name to array (...); dict entries broadcast.
-        joints: the names along the last axis.
+        name: "q", "v" or "a".
+        values: an array (..., n), or a dict from joint name to array (...); of a joint with several coordinates
+            (..., that many). Dict entries broadcast.
+        joints: the joints along the last axis.
 
     Returns:
         A float64 array (..., n).
 
     Raises:
-        ShapeError: the last axis has not one value for each joint, or dict entries do not broadcast.
-        NumberError: NaN, inf, complex, text, bool, or an integer that float64 cannot hold.
+        ShapeError: the last axis has not one value for each coordinate, or dict entries do not broadcast.
+        NumberError: NaN, inf, complex, text, bool, an integer that float64 cannot hold, or no unit quaternion.
         UnknownNameError, MissingJointError: a dict's keys are not the joints' names.
     """
+    labels = [label for joint in joints for label in (joint.q_labels() if name == "q" else joint.v_labels())]
     if isinstance(values, Mapping):
-        return _from_dict(name, values, joints)
-    array = real(name, values)
-    if array.ndim == 0 or array.shape[-1] != len(joints):
-        got = "no axis" if array.ndim == 0 else f"{array.shape[-1]} values on its last axis"
-        raise ShapeError(
-            f"{name} has {got}, expected {len(joints)} ({_listed(joints)}): pass one per joint",
-            name=name,
-            got=array.shape,
-            wanted=f"(..., {len(joints)})",
-        )
-    return finite(name, array, joints)
+        array = _from_dict(name, values, joints)
+    else:
+        array = real(name, values)
+        if array.ndim == 0 or array.shape[-1] != len(labels):
+            got = "no axis" if array.ndim == 0 else f"{array.shape[-1]} values on its last axis"
+            raise ShapeError(
+                f"{name} has {got}, expected {len(labels)} ({_listed(labels)}): pass one per {_each(joints)}",
+                name=name,
+                got=array.shape,
+                wanted=f"(..., {len(labels)})",
+            )
+    finite(name, array, labels)
+    if name == "q":
+        _check_quaternions(array, joints)
+    return array
 
 
 def vectors(name: str, values: ArrayLike) -> Array:
@@ -102,6 +112,20 @@ def real(name: str, values: ArrayLike) -> Array:
     return np.asarray(array, dtype=np.float64)
 
 
+def whole_number(name: str, value: object, least: int, most: int, shown: str = "") -> int:
+    """An integer in a range; a bool is none.
+
+    Raises:
+        InputError: it is of another type, or out of range.
+    """
+    wanted = f"expected a whole number from {least} to {shown or most}"
+    if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
+        raise InputError(f"{name} is {value!r} ({type(value).__name__}): {wanted}")
+    if not least <= value <= most:
+        raise InputError(f"{name} is {value}: {wanted}")
+    return int(value)
+
+
 def finite(name: str, array: Array, labels: Sequence[str] = ()) -> Array:
     """The array, all of whose values are finite.
 
@@ -116,7 +140,7 @@ def finite(name: str, array: Array, labels: Sequence[str] = ()) -> Array:
     joint = labels[index[-1]] if labels else None
     more = f" ({len(bad)} such values in all)" if len(bad) > 1 else ""
     raise NumberError(
-        f"{name}[{', '.join(map(str, index))}]{f', joint {joint!r},' if joint else ''} is {value}, "
+        f"{name}{list(index) if index else ''}{f', joint {joint!r},' if joint else ''} is {value}, "
         f"expected a finite number{more}: look where it comes from, or drop that state",
         name=name,
         joint=joint,
@@ -125,19 +149,59 @@ def finite(name: str, array: Array, labels: Sequence[str] = ()) -> Array:
     )
 
 
-def _from_dict(name: str, values: Mapping[str, ArrayLike], joints: Sequence[str]) -> Array:
+def _each(joints: Sequence[Joint]) -> str:
+    return "joint" if all(joint.nq == 1 for joint in joints) else "coordinate"
+
+
+def _check_quaternions(q: Array, joints: Sequence[Joint]) -> None:
+    """The last four coordinates of a floating joint are a rotation only if they have length 1."""
+    at = 0
+    for joint in joints:
+        at += joint.nq
+        if joint.type is not JointType.FLOATING:
+            continue
+        squares = (q[..., at - 4 : at] ** 2).sum(axis=-1)
+        bad = np.argwhere(np.abs(squares - 1.0) > UNIT_QUATERNION)
+        if len(bad):
+            index = tuple(int(k) for k in bad[0])
+            raise NumberError(
+                f"q{list(index) if index else ''}, joint {joint.name!r}, has a quaternion (x, y, z, w) of length "
+                f"{float(squares[index]) ** 0.5:.15g}, expected 1: divide it by its length (the last of its four "
+                "numbers is the real part)",
+                name="q",
+                joint=joint.name,
+                index=index,
+                value=q[index][at - 4 : at].tolist(),
+            )
+
+
+def _from_dict(name: str, values: Mapping[str, ArrayLike], joints: Sequence[Joint]) -> Array:
     """A dict from joint name to array, stacked in the order of the joints."""
+    names = [joint.name for joint in joints]
     for key in values:
-        if key not in joints:
-            raise UnknownNameError("moving joint", key, joints, f"{name} must have one entry for each")
-    missing = [joint for joint in joints if joint not in values]
+        if key not in names:
+            raise UnknownNameError("moving joint", key, names, f"{name} must have one entry for each")
+    missing = [joint for joint in names if joint not in values]
     if missing:
         raise MissingJointError(name, missing)
-    columns = [finite(f"{name}[{joint!r}]", real(f"{name}[{joint!r}]", values[joint])) for joint in joints]
+    columns = []
+    for joint in joints:
+        label = f"{name}[{joint.name!r}]"
+        entry = finite(label, real(label, values[joint.name]))
+        width = joint.nq if name == "q" else joint.nv
+        if width > 1 and (entry.ndim == 0 or entry.shape[-1] != width):
+            slots = joint.type.q_slots if name == "q" else joint.type.v_slots
+            raise ShapeError(
+                f"{label} has shape {entry.shape}, expected (..., {width}): pass {', '.join(slots)}",
+                name=label,
+                got=entry.shape,
+                wanted=f"(..., {width})",
+            )
+        columns += [entry] if width == 1 else [entry[..., k] for k in range(width)]
     try:
         return np.stack(np.broadcast_arrays(*columns), axis=-1) if columns else np.zeros((0,))
     except ValueError:
-        shapes = ", ".join(f"{joint}: {x.shape}" for joint, x in zip(joints, columns, strict=True))
+        shapes = ", ".join(f"{key}: {np.shape(values[key])}" for key in names)
         raise ShapeError(
             f"the entries of {name} have shapes that do not broadcast ({shapes}): give all the same shape",
             name=name,

@@ -1,4 +1,10 @@
-"""What a URDF must fulfil before anything is computed with it; each rule says what it got and how to mend it."""
+"""What a URDF must fulfil before anything is computed with it; each rule says what it got and how to mend it.
+
+Nothing is guessed. What the format itself defines where it is left out is taken as defined: an <origin>, also that of
+an <inertial>, is the identity (so the centre of mass is at the link's origin), lower and upper limits are 0, a
+multiplier is 1. One default is refused all the same: a joint that moves must name its <axis>, since 1 0 0 is so rarely
+meant.
+"""
 
 from __future__ import annotations
 
@@ -7,19 +13,31 @@ import re
 from collections import Counter
 from typing import Any
 
-from rttrr_pin.errors import UrdfError, nearest
-from rttrr_pin.model.tree import JointType
+from rttrr_pin.errors import UrdfError, nearest, shortened
+from rttrr_pin.model.joint import JointType
+from rttrr_pin.model.words import ATTRIBUTES, check_words
 
-NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
-"""A decimal number as XML Schema writes it; no unit, comma, hexadecimal digits, `nan` or `inf`."""
+NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
+"""A decimal number as XML Schema writes it, in ASCII; no unit, comma, hexadecimal digits, `nan` or `inf`."""
 
-INERTIA_ENTRIES = ("ixx", "ixy", "ixz", "iyy", "iyz", "izz")
+BETWEEN = re.compile("[ \t\r\n]+")
+"""What stands between numbers: the blanks of XML, no others (Python knows more)."""
+
+INERTIA_ENTRIES = ATTRIBUTES["inertia"]
+
+LIMITS = ATTRIBUTES["limit"]
 
 SUPPORTED = tuple(JointType)
 
+FOLLOWABLE = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
+"""Types of joints that can follow another, or be followed."""
+
+LONGEST_CHAIN = 100
+"""Joints that follow one another; to follow a chain takes time with the square of its length."""
+
 CHILD_ONCE = {
     "link": ("inertial",),
-    "joint": ("origin", "parent", "child", "axis", "limit"),
+    "joint": ("origin", "parent", "child", "axis", "limit", "mimic", "dynamics"),
     "inertial": ("origin", "mass", "inertia"),
 }
 """Elements of which URDF allows one; parsers silently take the first or the last of several."""
@@ -65,20 +83,22 @@ class Element:
         text = self.xml.get(attribute, default)
         if text is None:
             raise self.error(f'<{self.xml.tag}> has no {attribute}: write {attribute}="..." with the value')
-        words = text.split()
-        where = f'<{self.xml.tag} {attribute}="{text}">'
+        words = BETWEEN.split(text.strip(" \t\r\n")) if text.strip() else []
+        where = f'<{self.xml.tag} {attribute}="{shortened(text)}">'
         if len(words) != count:
             raise self.error(f"{where} has {len(words)} values, expected {count}{_hint(text)}")
         return [self._number(word, where) for word in words]
 
     def _number(self, word: str, where: str) -> float:
         if not NUMBER.fullmatch(word):
-            raise self.error(f"{where}: {word!r} is not a decimal number{_hint(word)}")
+            raise self.error(f"{where}: {shortened(word)!r} is not a decimal number{_hint(word)}")
         value = float(word)
         if not math.isfinite(value):
-            raise self.error(f"{where}: {word} is larger than float64 can hold: check the exponent")
+            raise self.error(f"{where}: {shortened(word)} is larger than float64 can hold: check the exponent")
         if value == 0.0 and re.search(r"[1-9]", re.split("[eE]", word)[0]):
-            raise self.error(f"{where}: {word} is smaller than float64 can hold: write 0, or check the exponent")
+            raise self.error(
+                f"{where}: {shortened(word)} is smaller than float64 can hold: write 0, or check the exponent"
+            )
         return value
 
 
@@ -88,12 +108,7 @@ def check_document(root: Any, source: str) -> None:
     Raises:
         UrdfError: the first rule that is broken, with line, element, value and fix.
     """
-    if root.tag != "robot":
-        raise UrdfError(
-            f"the outermost element is <{root.tag}>, expected <robot>: is this a URDF?",
-            source=source,
-            line=root.sourceline,
-        )
+    check_words(root, source)
     robot = Element(root, source, "robot")
     robot.text("name", 'which URDF requires: write <robot name="...">')
     links = [_named(xml, source) for xml in root.findall("link")]
@@ -107,12 +122,13 @@ def check_document(root: Any, source: str) -> None:
     for joint in joints:
         _check_joint(joint)
     _check_tree(robot, links, joints)
+    _check_mimics(joints)
 
 
 def _named(xml: Any, source: str) -> Element:
     """A link or joint, labelled by its name."""
     name = Element(xml, source, xml.tag).text("name", "which URDF requires")
-    return Element(xml, source, f'{xml.tag} "{name}"')
+    return Element(xml, source, f'{xml.tag} "{shortened(name)}"')
 
 
 def _check_unique(elements: list[Element]) -> None:
@@ -147,23 +163,73 @@ def _check_joint(joint: Element) -> None:
     kind = joint.text("type", f"expected one of {', '.join(SUPPORTED)}")
     if kind not in SUPPORTED:
         raise joint.error(f"type {kind!r} is not supported: {nearest(kind, SUPPORTED)}")
-    if joint.child("mimic") is not None:
-        raise joint.error("<mimic> is not supported: remove it to let the joint move by itself")
     _check_origin(joint)
-    if kind == JointType.FIXED:
+    _check_dynamics(joint)
+    if kind in (JointType.FIXED, JointType.FLOATING):
+        _check_unused(joint)
         return
     axis = joint.needed("axis", 'which a joint that moves needs: write <axis xyz="..."/>')
     if not any(axis.numbers("xyz", 3)):
         raise axis.error("its axis is 0 0 0, which has no direction: write a unit vector")
+    if kind == JointType.PLANAR and not (axis.numbers("xyz", 3)[:2] == [0.0, 0.0] and axis.numbers("xyz", 3)[2] > 0.0):
+        raise axis.error(
+            "the axis of a planar joint is not along +z: URDF does not say which directions x and y then are; "
+            "turn the joint by the rpy of its <origin> instead"
+        )
     limit = joint.child("limit")
     if limit is not None:
         _check_limit(joint, limit, kind)
 
 
+def _check_unused(joint: Element) -> None:
+    """What a joint without an axis has no use for must still be numbers."""
+    axis, limit = joint.child("axis"), joint.child("limit")
+    if axis is not None:
+        axis.numbers("xyz", 3)
+    for key in LIMITS:
+        if limit is not None and key in limit.xml.attrib:
+            limit.numbers(key, 1)
+
+
+def _check_dynamics(joint: Element) -> None:
+    """Damping and friction, where given, are numbers that are not negative."""
+    dynamics = joint.child("dynamics")
+    for key in ("damping", "friction"):
+        if dynamics is not None and key in dynamics.xml.attrib and dynamics.numbers(key, 1)[0] < 0.0:
+            raise dynamics.error(f"{key} is {dynamics.xml.get(key)}: expected a number that is not negative")
+
+
+def _check_mimics(joints: list[Element]) -> None:
+    """Each <mimic> names a joint with one coordinate, and following them comes to a joint that moves by itself."""
+    by_name = {joint.xml.get("name"): joint for joint in joints}
+    for joint in joints:
+        mimic = joint.child("mimic")
+        if mimic is None or joint.xml.get("type") == JointType.FIXED:
+            continue
+        for key in ("multiplier", "offset"):
+            mimic.numbers(key, 1, "0")
+        seen = [joint.xml.get("name")]
+        while mimic is not None:
+            target = mimic.text("joint", "expected the name of the joint to follow")
+            if target not in by_name:
+                raise mimic.error(f"follows joint {target!r}, which does not exist: {nearest(target, by_name)}")
+            for name in (seen[-1], target):
+                if by_name[name].xml.get("type") not in FOLLOWABLE:
+                    raise mimic.error(
+                        f"joint {name!r} is {by_name[name].xml.get('type')}: only joints with one coordinate follow"
+                    )
+            if target in seen:
+                raise mimic.error(
+                    f"follows itself through {' -> '.join([*seen, target])}: let one of them move by itself"
+                )
+            seen.append(target)
+            if len(seen) > LONGEST_CHAIN:
+                raise mimic.error(f"follows through more than {LONGEST_CHAIN} joints: let it follow the last of them")
+            mimic = by_name[target].child("mimic")
+
+
 def _check_limit(joint: Element, limit: Element, kind: str) -> None:
-    set_ = {
-        key: limit.numbers(key, 1)[0] for key in ("lower", "upper", "velocity", "effort") if key in limit.xml.attrib
-    }
+    set_ = {key: limit.numbers(key, 1)[0] for key in LIMITS if key in limit.xml.attrib}
     for key in ("velocity", "effort"):
         if set_.get(key, 0.0) < 0.0:
             raise limit.error(f"{key} limit is {set_[key]}: expected a positive number")

@@ -6,62 +6,18 @@ joint carries it and its inertia does not enter the equations of motion.
 
 from __future__ import annotations
 
-import enum
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rttrr_pin.errors import InputError, UnknownNameError
-
-Array = NDArray[np.float64]
+from rttrr_pin.model.joint import Array, Drive, Joint, JointType, frozen
 
 STANDARD_GRAVITY = (0.0, 0.0, -9.81)
 """The gravity field [m/s^2] in the base frame that is used unless another is passed (Pinocchio's default)."""
-
-
-class JointType(enum.StrEnum):
-    """How a joint moves; the values are URDF's words."""
-
-    REVOLUTE = "revolute"
-    CONTINUOUS = "continuous"
-    PRISMATIC = "prismatic"
-    FIXED = "fixed"
-
-    @property
-    def rotates(self) -> bool:
-        """Whether the coordinate is an angle [rad]; else, if the joint moves at all, it is a length [m]."""
-        return self in (JointType.REVOLUTE, JointType.CONTINUOUS)
-
-    @property
-    def unit(self) -> str:
-        """The unit of the joint's coordinate."""
-        return "rad" if self.rotates else "m"
-
-    @property
-    def effort_unit(self) -> str:
-        """The unit of the joint's torque or force."""
-        return "N m" if self.rotates else "N"
-
-
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """What a joint may do; infinite where the file sets no limit.
-
-    Attributes:
-        lower: smallest coordinate [rad or m].
-        upper: largest coordinate [rad or m].
-        velocity: largest rate [rad/s or m/s].
-        effort: largest torque or force [N m or N].
-    """
-
-    lower: float = -math.inf
-    upper: float = math.inf
-    velocity: float = math.inf
-    effort: float = math.inf
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -85,47 +41,16 @@ class Link:
     rotated: bool = False
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "com", _frozen(self.com, (3,), f"com of link {self.name!r}"))
-        object.__setattr__(self, "inertia", _frozen(self.inertia, (3, 3), f"inertia of link {self.name!r}"))
+        object.__setattr__(self, "com", frozen(self.com, (3,), f"com of link {self.name!r}"))
+        object.__setattr__(self, "inertia", frozen(self.inertia, (3, 3), f"inertia of link {self.name!r}"))
+        if not math.isfinite(self.mass):
+            raise InputError(f"mass of link {self.name!r} is {self.mass}: expected a finite number")
+        if not np.array_equal(self.inertia, self.inertia.T):
+            raise InputError(f"inertia of link {self.name!r} is not symmetric: {self.inertia.tolist()}")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Joint:
-    """A joint, and where it sits on the link that carries it.
-
-    Attributes:
-        name: its name in the file.
-        type: how it moves.
-        parent: index of the parent link in `Model.links`; -1 where the parent is the root link.
-        R: R_parent_i at coordinate zero: maps vectors of the joint frame to the parent link frame, (3, 3).
-        p: p_parent_i at coordinate zero: from the parent link's origin to the joint's, in the parent frame, (3,) [m].
-        axis: the unit vector that the joint turns about or slides along, in {i}, (3,).
-        limits: what it may do.
-        rotated: whether `R` was computed from a non-zero rpy (else it is exactly the identity).
-    """
-
-    name: str
-    type: JointType
-    parent: int = -1
-    R: Array = field(default_factory=lambda: np.eye(3))
-    p: Array = field(default_factory=lambda: np.zeros(3))
-    axis: Array = field(default_factory=lambda: np.array([1.0, 0.0, 0.0]))
-    limits: Limits = Limits()
-    rotated: bool = False
-
-    def __post_init__(self) -> None:
-        for name, shape in (("R", (3, 3)), ("p", (3,)), ("axis", (3,))):
-            object.__setattr__(self, name, _frozen(getattr(self, name), shape, f"{name} of joint {self.name!r}"))
-        if self.nv and abs(np.linalg.norm(self.axis) - 1.0) > 1e-9:
-            raise InputError(
-                f"axis of joint {self.name!r} is {self.axis.tolist()}, of length {np.linalg.norm(self.axis):.6g}; "
-                "expected a unit vector: divide it by its length"
-            )
-
-    @property
-    def nv(self) -> int:
-        """The number of its degrees of freedom."""
-        return 0 if self.type is JointType.FIXED else 1
+ROOT_JOINT, UNIVERSE = "root_joint", "universe"
+"""Pinocchio's names for the joint of a floating base, and for what it floats in."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -139,6 +64,7 @@ class Model:
         joints: `joints[i]` carries `links[i]`.
         gravity: the gravity field in the base frame, (3,) [m/s^2]: a free body accelerates by it.
         urdf: the text that the model was read from; empty where it was made from numbers.
+        floating: whether `with_floating_base` made it.
     """
 
     name: str
@@ -147,30 +73,52 @@ class Model:
     joints: tuple[Joint, ...]
     gravity: Array = field(default_factory=lambda: np.array(STANDARD_GRAVITY))
     urdf: str = ""
+    floating: bool = False
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "gravity", _frozen(self.gravity, (3,), "gravity"))
+        object.__setattr__(self, "gravity", frozen(self.gravity, (3,), "gravity"))
         if len(self.links) != len(self.joints):
             raise InputError(
                 f"{len(self.joints)} joints for {len(self.links)} links: expected one joint for each link "
                 "but the root, which is passed apart"
             )
+        for kind, names in (("link", self.link_names), ("joint", tuple(joint.name for joint in self.joints))):
+            twice = [name for name in names if names.count(name) > 1] if len(set(names)) < len(names) else []
+            if twice:
+                raise InputError(f"{kind} {twice[0]!r} stands {names.count(twice[0])} times: give each its own name")
         for i, joint in enumerate(self.joints):
             if not -1 <= joint.parent < i:
                 raise InputError(
                     f"joint {joint.name!r}, number {i}, names link {joint.parent} as its parent: expected -1 (the "
                     f"root) or a link before it (0 to {i - 1}): list parents before children"
                 )
+            if joint.mimic is not None and not (
+                0 <= joint.mimic.joint < len(self.joints) and self.joints[joint.mimic.joint].independent
+            ):
+                raise InputError(
+                    f"joint {joint.name!r} follows joint number {joint.mimic.joint}, which does not move by itself: "
+                    "name the joint at the end of the chain"
+                )
+
+    @cached_property
+    def independent(self) -> tuple[int, ...]:
+        """Indices of the joints that move and follow no other; q, v, a and tau are made of theirs, in this order."""
+        return tuple(i for i, joint in enumerate(self.joints) if joint.independent)
 
     @cached_property
     def moving(self) -> tuple[Joint, ...]:
-        """The joints with a degree of freedom: the last axis of q, v, a and tau."""
-        return tuple(joint for joint in self.joints if joint.nv)
+        """The joints that move and follow no other."""
+        return tuple(self.joints[i] for i in self.independent)
+
+    @property
+    def nq(self) -> int:
+        """The length of q."""
+        return sum(joint.nq for joint in self.moving)
 
     @property
     def nv(self) -> int:
-        """The number of degrees of freedom."""
-        return len(self.moving)
+        """The number of degrees of freedom: the length of v, a, tau."""
+        return sum(joint.nv for joint in self.moving)
 
     @property
     def link_names(self) -> tuple[str, ...]:
@@ -179,8 +127,18 @@ class Model:
 
     @property
     def joint_names(self) -> tuple[str, ...]:
-        """The names along the last axis of q, v, a, tau (fixed joints are not among them)."""
+        """The joints that q, v, a and tau are of (fixed joints, and joints that follow others, are not among them)."""
         return tuple(joint.name for joint in self.moving)
+
+    @cached_property
+    def q_names(self) -> tuple[str, ...]:
+        """The names along the last axis of q."""
+        return tuple(label for joint in self.moving for label in joint.q_labels())
+
+    @cached_property
+    def v_names(self) -> tuple[str, ...]:
+        """The names along the last axis of v, a and tau."""
+        return tuple(label for joint in self.moving for label in joint.v_labels())
 
     def link_index(self, name: str) -> int:
         """The index of a link in `links`.
@@ -205,16 +163,26 @@ class Model:
             yield i
             i = self.joints[i].parent
 
+    def with_floating_base(self) -> Model:
+        """The same robot, not bolted down: the root link becomes the first link, on a floating joint of its own.
+
+        Its coordinates are Pinocchio's: position and quaternion (x, y, z, w) of the root link in the world, its rates
+        the twist in the root link's frame, linear before angular.
+        """
+        base = Joint(ROOT_JOINT, JointType.FLOATING)
+        moved = [
+            replace(
+                joint, parent=joint.parent + 1, mimic=joint.mimic and replace(joint.mimic, joint=joint.mimic.joint + 1)
+            )
+            for joint in self.joints
+        ]
+        world = Link(UNIVERSE)
+        return replace(self, root=world, links=(self.root, *self.links), joints=(base, *moved), floating=True)
+
+    def without_drives(self) -> Model:
+        """The same robot, whose joints take no torque themselves."""
+        return replace(self, joints=tuple(replace(joint, drive=Drive()) for joint in self.joints))
+
     def with_gravity(self, gravity: Array) -> Model:
         """The same robot in another gravity field."""
         return replace(self, gravity=gravity)
-
-
-def _frozen(values: Array, shape: tuple[int, ...], name: str) -> Array:
-    """A read-only float64 copy of the wanted shape."""
-    array = np.array(values, dtype=np.float64)
-    if array.shape != shape or not np.isfinite(array).all():
-        raise InputError(f"{name} is {np.asarray(values).tolist()}: expected {shape} finite numbers")
-    array += 0.0  # -0.0, a by-product of some rotations, becomes 0.0
-    array.setflags(write=False)
-    return array

@@ -9,12 +9,15 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rttrr_pin.errors import InputError, UnknownNameError
+from rttrr_pin.errors import InputError, ShapeError, UnknownNameError
 
 Array = NDArray[np.float64]
 
-QUANTITIES = ("tau", "F", "N", "f", "n")
-"""What the recursion returns, in the order of reports."""
+LINK_QUANTITIES = ("F", "N", "f", "n")
+"""One vector for each link."""
+
+QUANTITIES = ("tau", *LINK_QUANTITIES)
+"""What is compared, in the order of reports."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,13 +53,15 @@ class LinkWrenches:
     Everything but `tau` is expressed in {i}, the frame of the link that it belongs to.
 
     Attributes:
-        tau: generalised driving forces, the component of n (revolute) or f (prismatic) along the axis,
-            (..., nv) [N m or N].
+        tau: generalised driving forces, the component of n (revolute) or f (prismatic) along the axis, plus
+            tau_joint, (..., nv) [N m or N].
         F: net force on the link, mass times acceleration of its centre of mass with gravity as an upward
             acceleration of the base, (..., links, 3) [N]. Not f, the force that crosses the joint.
         N: net moment on the link about its centre of mass, (..., links, 3) [N m].
         f: force that the parent link exerts on the link, (..., links, 3) [N].
         n: moment that the parent link exerts on the link, about the origin of {i}, (..., links, 3) [N m].
+        links: the names along the links axis.
+        tau_joint: the part of tau that the joint itself takes (armature, friction), which its bearing does not carry.
         links: the names along the links axis.
         joints: the names along the last axis of tau.
     """
@@ -66,13 +71,14 @@ class LinkWrenches:
     N: Array
     f: Array
     n: Array
+    tau_joint: Array
     links: tuple[str, ...] = ()
     joints: tuple[str, ...] = ()
 
     @classmethod
     def of(cls, parts: Mapping[str, Array], links: tuple[str, ...], joints: tuple[str, ...]) -> LinkWrenches:
         """The five quantities by name, with the names along their axes."""
-        return cls(parts["tau"], parts["F"], parts["N"], parts["f"], parts["n"], links, joints)
+        return cls(**{key: parts[key] for key in ("tau", *LINK_QUANTITIES, "tau_joint")}, links=links, joints=joints)
 
     def at(self, name: str) -> dict[str, Array]:
         """What acts at one link, by quantity; for the name of a moving joint, `{"tau": ...}`.
@@ -92,5 +98,17 @@ class LinkWrenches:
         return ((key, getattr(self, key)) for key in QUANTITIES)
 
     def __getitem__(self, index: int | slice) -> LinkWrenches:
-        """The same for one state or some states of a batch."""
-        return LinkWrenches.of({key: value[index] for key, value in self.items()}, self.links, self.joints)
+        """The same for one state or some states of a batch.
+
+        Raises:
+            ShapeError: there is no batch axis.
+        """
+        if self.tau.ndim == 1:
+            raise ShapeError(
+                "the result is of one state and has no batch axis: read .tau, .f, ... or .at(name)",
+                name="result",
+                got=self.tau.shape,
+                wanted="(..., nv) with a batch axis in front",
+            )
+        parts = {key: value[index] for key, value in self.items()} | {"tau_joint": self.tau_joint[index]}
+        return LinkWrenches.of(parts, self.links, self.joints)

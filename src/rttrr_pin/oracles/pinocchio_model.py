@@ -11,6 +11,7 @@ import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
 from rttrr_pin.model import Joint, JointType, Model
+from rttrr_pin.model.joint import AXIAL
 
 Array = NDArray[np.float64]
 
@@ -42,13 +43,24 @@ class PinLink:
 
     def to_joint(self, f: Array, n: Array) -> Array:
         """A force and a moment at the link's origin, (N, 3) each, at the joint's: (N, 6)."""
-        f, n = f @ self.R.T, n @ self.R.T
+        f, n = product(self.R, f), product(self.R, n)
         return np.concatenate([f, n + np.cross(self.p, f)], axis=1)
 
     def from_joint(self, force: Array) -> Array:
         """A spatial force at the joint's origin, (N, 6), at the link's."""
         f, n = force[:, :3], force[:, 3:]
-        return np.concatenate([f @ self.R, (n - np.cross(self.p, f)) @ self.R], axis=1)
+        n = n - np.cross(self.p, f)
+        return np.concatenate([product(self.R.T, f), product(self.R.T, n)], axis=1)
+
+
+def product(matrix: Array, vectors: Array) -> Array:
+    """Matrix times vector for each row of (N, 3); the matrix is (3, 3), or one for each row, (N, 3, 3).
+
+    Written out, since a matrix product of the whole batch rounds by its size, and a state must give the same bits in
+    any batch.
+    """
+    x, y, z = (vectors[:, k, None] for k in range(3))
+    return matrix[..., :, 0] * x + matrix[..., :, 1] * y + matrix[..., :, 2] * z
 
 
 def pin_links(model: Model, pin_model: Any) -> list[PinLink]:
@@ -63,8 +75,8 @@ def pin_links(model: Model, pin_model: Any) -> list[PinLink]:
         frame = pin_model.frames[pin_model.getFrameId(link.name, pin.FrameType.BODY)]
         if fixed:
             inertia = pin_model.frames[pin_model.getFrameId(joint.name, pin.FrameType.FIXED_JOINT)].inertia
-        elif any(model.links[k].mass for k in _merged(model, i)):
-            inertia = pin.Inertia(link.mass, np.array(link.com), np.array(link.inertia))
+        elif any(model.links[k].mass or model.links[k].inertia.any() for k in _merged(model, i)):
+            inertia = None  # pin.Inertia refuses tensors that Pinocchio's own reader takes
         else:
             inertia = pin_model.inertias[frame.parentJoint]
         links.append(
@@ -73,9 +85,9 @@ def pin_links(model: Model, pin_model: Any) -> list[PinLink]:
                 int(frame.parentJoint),
                 np.array(frame.placement.rotation),
                 np.array(frame.placement.translation),
-                float(inertia.mass),
-                np.array(inertia.lever),
-                np.array(inertia.inertia),
+                float(inertia.mass if inertia else link.mass),
+                np.array(inertia.lever if inertia else link.com),
+                np.array(inertia.inertia if inertia else link.inertia),
             )
         )
     return links
@@ -84,15 +96,18 @@ def pin_links(model: Model, pin_model: Any) -> list[PinLink]:
 def differences(model: Model, pin_model: Any) -> list[str]:
     """One line for each number of Pinocchio's model that is not what the file says."""
     theirs = [name for name in pin_model.names if name != "universe"]
-    if theirs != list(model.joint_names):
-        return [f"moving joints: {', '.join(theirs)}, the file has {', '.join(model.joint_names)}"]
+    ours = [joint.name for joint in model.joints if joint.nv]
+    if theirs != ours:
+        return [f"moving joints: {', '.join(theirs)}, the file has {', '.join(ours)}"]
     found: list[str] = []
+    data = pin_model.createData()
     for i, joint in enumerate(model.joints):
-        found += _joint_differences(model, pin_model, joint, i)
+        found += _joint_differences(model, pin_model, data, joint, i)
+    found += _mimic_differences(model)
     return found
 
 
-def _joint_differences(model: Model, pin_model: Any, joint: Joint, i: int) -> Iterator[str]:
+def _joint_differences(model: Model, pin_model: Any, data: Any, joint: Joint, i: int) -> Iterator[str]:
     """Placement, axis and limits of a joint; mass, centre and tensor of what it carries."""
     R, p, ancestor = _placement_on_moving(model, i)
     here, link = f"joint {joint.name!r}", f"link {model.links[i].name!r}"
@@ -110,10 +125,27 @@ def _joint_differences(model: Model, pin_model: Any, joint: Joint, i: int) -> It
     placement = pin_model.jointPlacements[at]
     yield from _differs(f"{here} placement R", R, placement.rotation, 1.0)
     yield from _differs(f"{here} placement p", p, placement.translation)
-    yield from _differs(f"{here} axis", _subspace(joint), pin_model.createData().joints[at].S, 1.0)
+    yield from _differs(f"{here} axis", _subspace(joint), data.joints[at].S, 1.0)
     yield from _limit_differences(here, joint, pin_model, at)
     merged = [(i, np.eye(3), np.zeros(3)), *((k, *_placement_on_moving(model, k)[:2]) for k in _merged(model, i))]
     yield from _inertia_differences(link, _inertia(model, merged), pin_model.inertias[at])
+
+
+def _mimic_differences(model: Model) -> Iterator[str]:
+    """Multiplier and offset of followers, where Pinocchio can build them: not if the followed joint sorts later."""
+    followers = [joint for joint in model.joints if joint.mimic is not None and not joint.mimic.rounded]
+    if not followers:
+        return
+    try:
+        pin_model = pin.buildModelFromXML(model.urdf, mimic=True)
+    except (ValueError, RuntimeError):
+        return
+    for joint in followers:
+        number = pin_model.getJointId(joint.name)
+        if number < pin_model.njoints and pin_model.joints[number].shortname() == "JointModelMimic" and joint.mimic:
+            theirs = pin_model.joints[number].extract()
+            yield from _differs(f"joint {joint.name!r} mimic multiplier", joint.mimic.multiplier, theirs.scaling)
+            yield from _differs(f"joint {joint.name!r} mimic offset", joint.mimic.offset, theirs.offset)
 
 
 def _inertia_differences(link: str, ours: tuple[float, Array, Array], theirs: Any) -> Iterator[str]:
@@ -125,12 +157,16 @@ def _inertia_differences(link: str, ours: tuple[float, Array, Array], theirs: An
 
 
 def _limit_differences(here: str, joint: Joint, pin_model: Any, at: int) -> Iterator[str]:
-    """Limits, where the file sets them; a continuous joint has none on its angle."""
+    """Limits, where the file sets them (a continuous joint has none on its angle), damping and friction."""
+    if joint.type not in AXIAL:
+        return
     limits, v, q = joint.limits, pin_model.joints[at].idx_v, pin_model.joints[at].idx_q
     compared = [
         ("velocity limit", limits.velocity, pin_model.velocityLimit[v]),
         ("effort limit", limits.effort, pin_model.effortLimit[v]),
     ]
+    yield from _differs(f"{here} damping", joint.dynamics.damping, pin_model.damping[v])
+    yield from _differs(f"{here} friction", joint.dynamics.friction, pin_model.upperDryFrictionLimit[v])
     if joint.type is not JointType.CONTINUOUS:
         compared += [
             ("lower limit", limits.lower, pin_model.lowerPositionLimit[q]),
@@ -154,8 +190,18 @@ def _short(x: Array) -> str:
 
 
 def _subspace(joint: Joint) -> Array:
-    """The joint's motion per unit rate, linear before angular."""
-    return np.concatenate([np.zeros(3), joint.axis] if joint.type.rotates else [joint.axis, np.zeros(3)])
+    """The joint's motion per unit rate, linear before angular: (6,), or (6, nv) where there are several rates."""
+    if joint.type in AXIAL:
+        return np.concatenate([np.zeros(3), joint.axis] if joint.type.rotates else [joint.axis, np.zeros(3)])
+    return np.eye(6) if joint.type is JointType.FLOATING else _with_axis(joint.axis)
+
+
+def _with_axis(axis: Array) -> Array:
+    """The subspace of a planar joint: along x and y, about the axis."""
+    S = np.zeros((6, 3))
+    S[0, 0] = S[1, 1] = 1.0
+    S[3:, 2] = axis
+    return S
 
 
 def _placement_on_moving(model: Model, i: int) -> tuple[Array, Array, int]:

@@ -28,6 +28,9 @@ def validation_data(result: Validation) -> dict[str, Any]:
         quantities.setdefault(row.quantity, {})[row.at] = _row(row)
     return {
         "robot": result.robot,
+        "base": result.base,
+        "gravity": result.gravity,
+        "drives": {name: asdict(drive) for name, drive in result.drives.items()},
         "oracle": result.oracle,
         "versions": result.versions,
         "seed": result.seed,
@@ -39,6 +42,7 @@ def validation_data(result: Validation) -> dict[str, Any]:
         "worst": None
         if worst is None
         else {"quantity": worst.quantity, "at": worst.at, "state": worst.share.state, "share": worst.share.value},
+        "normwise": {quantity: asdict(seen) for quantity, seen in result.whole.items()},
         "quantities": quantities,
         "seconds": result.seconds,
     }
@@ -62,7 +66,8 @@ def state_data(report: StateReport) -> dict[str, Any]:
         "robot": report.robot,
         "oracle": report.oracle,
         "state": report.index,
-        "joints": report.joints,
+        "q_names": report.q_names,
+        "v_names": report.v_names,
         "links": report.ours.links,
         **{name: getattr(states, name)[0].tolist() for name in "qva"},
         "payload": [
@@ -94,15 +99,19 @@ def write_whole(path: Path, text: str) -> None:
     Raises:
         InputError: the folder does not exist or cannot be written to.
     """
+    target = path.resolve()  # a link stays a link
     try:
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        if target.exists() and not target.is_file():
+            target.write_text(text, encoding="utf-8")  # a pipe or a device is written to, not replaced
+            return
+        handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
         try:
             with os.fdopen(handle, "w", encoding="utf-8") as file:
                 file.write(text)
             umask = os.umask(0)
             os.umask(umask)
             Path(name).chmod(0o666 & ~umask)
-            Path(name).replace(path)
+            Path(name).replace(target)
         except BaseException:
             Path(name).unlink(missing_ok=True)
             raise

@@ -11,7 +11,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from rttrr_pin.model import QUANTITIES
+from rttrr_pin.model import QUANTITIES, STANDARD_GRAVITY
 from rttrr_pin.validate import Row, StateReport, Validation
 
 Array = NDArray[np.float64]
@@ -27,8 +27,8 @@ def show_validation(result: Validation, console: Console, rerun: str = "", full:
     console.print(
         Text(result.robot, "bold"),
         Text(
-            f"{result.n_states:,} {result.family} states, seed {result.seed}, payload {result.payload}; "
-            f"ours against {result.oracle}"
+            f"{result.n_states:,} {result.family} states, seed {result.seed}, payload {result.payload}"
+            f"{_unusual(result)}; ours against {result.oracle}"
         ),
     )
     shown = list(result.rows)
@@ -54,7 +54,8 @@ def show_state(report: StateReport, console: Console) -> None:
         axes = "base axes" if load.in_base else "link axes"
         f, n = _numbers(load.f.ravel()), _numbers(load.n.ravel())
         console.print(Text(f"payload at {report.ours.links[load.link]}, {axes}: f {f} N, n {n} N m"))
-    table = Table("", "ours", "theirs", "difference", "in eps", "verdict", box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    table = Table("", "ours", "theirs", "differ", "in eps", "", box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    table.columns[0].overflow = "fold"
     for column in (1, 2, 3, 4):
         table.columns[column].justify = "right"
         table.columns[column].no_wrap = True
@@ -67,14 +68,27 @@ def show_state(report: StateReport, console: Console) -> None:
         previous = row.quantity
         table.add_row(
             Text(f"{row.at} [{row.unit}]" if row.quantity == "tau" else row.at),
-            "\n".join(f"{x:.12g}" for x in ours),
-            "\n".join(f"{x:.12g}" for x in theirs),
+            "\n".join(f"{x:.15g}" for x in ours),
+            "\n".join(f"{x:.15g}" for x in theirs),
             f"{gap.difference[0]:.1e}",
             f"{gap.relative[0]:.1f}",
             _word(bool(gap.share[0] <= 1.0)),
         )
     console.print(table)
-    console.print(_word(report.agrees))
+    shares = [float(gap.share[0]) for gap in report.gaps]
+    worst = report.rows[int(np.argmax(shares))]
+    told = f"closest to the gate: {worst.quantity} at {worst.at}, {max(shares):.3f} of what rounding can explain"
+    console.print(_word(report.agrees), Text(told))
+
+
+def _unusual(result: Validation) -> str:
+    """What is not as by default: base, gravity, drives."""
+    parts = ["floating base"] if result.base == "floating" else []
+    if result.gravity != STANDARD_GRAVITY:
+        parts.append(f"gravity {_numbers(np.array(result.gravity))} m/s^2")
+    if result.drives:
+        parts.append(f"drives of {len(result.drives)} joints")
+    return "".join(f", {part}" for part in parts)
 
 
 def _validation_table(rows: Iterable[Row]) -> Table:
@@ -90,20 +104,32 @@ def _validation_table(rows: Iterable[Row]) -> Table:
         table.add_row(
             row.quantity if first else "",
             Text(row.at),
-            f"{row.absolute.value:.1e} {row.unit}",
-            f"{row.relative.value:.1f}",
-            f"{row.share.value:.3f}",
-            str(row.share.state),
+            *_worst(row),
             _word(row.passed),
         )
     return table
 
 
+def _worst(row: Row) -> tuple[str, str, str, str]:
+    """The four numbers of a row; where ours and theirs are the same bits in every state there is no worst one."""
+    if row.absolute.value == 0.0:
+        return "equal", "", "", ""
+    error = f"{row.absolute.value:.1e} {row.unit}"
+    return error, f"{row.relative.value:.1f}", f"{row.share.value:.3f}", str(row.share.state)
+
+
 def _coordinates_table(report: StateReport) -> Table:
-    table = Table("joint", "q", "v", "a")
+    """q, v, a by name; of a floating joint q has other names than v, a, and stands apart."""
     states = report.states
-    for j, joint in enumerate(report.joints):
-        table.add_row(Text(joint), *(f"{x[0, j]:.17g}" for x in (states.q, states.v, states.a)))
+    numbers = {name: [f"{value:.17g}" for value in getattr(states, name)[0]] for name in "qva"}
+    alike = report.q_names == report.v_names
+    table = Table("joint", *("qva" if alike else "va"))
+    for j, label in enumerate(report.v_names):
+        table.add_row(Text(label), *(numbers[name][j] for name in ("qva" if alike else "va")))
+    if not alike:
+        table.add_section()
+        for label, value in zip(report.q_names, numbers["q"], strict=True):
+            table.add_row(Text(f"q of {label}"), value)
     return table
 
 

@@ -3,17 +3,22 @@
 from __future__ import annotations
 
 from rttrr_pin.validate.compare import EPS, Comparison, Row
+from rttrr_pin.validate.many import BASES, Entry, Task, validate_many
 from rttrr_pin.validate.run import StateReport, Validation, compare_state, validate
 from rttrr_pin.validate.states import FAMILIES, Sampler
 
 __all__ = [
+    "BASES",
     "EPS",
     "FAMILIES",
     "Comparison",
+    "Entry",
     "Row",
     "Sampler",
     "StateReport",
+    "Task",
     "Validation",
     "compare_state",
     "validate",
+    "validate_many",
 ]

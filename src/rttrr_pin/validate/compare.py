@@ -20,7 +20,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.model import LinkWrenches, Model
+from rttrr_pin.model import QUANTITIES, LinkWrenches, Model
 from rttrr_pin.oracles import Evaluation
 
 Array = NDArray[np.float64]
@@ -95,11 +95,17 @@ class Gap:
 
 
 class Comparison:
-    """Gathers the worst over any number of states, in memory that does not grow with them."""
+    """Gathers the worst over any number of states, in memory that does not grow with them.
+
+    Attributes:
+        rows: of each quantity at each link or joint.
+        whole: by quantity, the largest |ours - oracle| / |oracle| in eps, in the norm over all links or joints.
+    """
 
     def __init__(self, model: Model) -> None:
         self.rows = [Row(*labels) for labels in _labels(model)]
-        self._wholes = [("n" if joint.type.rotates else "f", model.joints.index(joint)) for joint in model.moving]
+        self.whole = {quantity: Worst() for quantity in QUANTITIES}
+        self._shares = _shares(model)
 
     def add(self, first: int, ours: LinkWrenches, oracle: Evaluation, bound: LinkWrenches) -> None:
         """Take in the results of consecutive states, (N, ...) each."""
@@ -108,14 +114,22 @@ class Comparison:
             row.relative.see(gap.relative, first)
             row.share.see(gap.share, first)
             row.failures += int((gap.share > 1.0).sum())
+        for quantity, worst in self.whole.items():
+            mine, theirs = (getattr(x, quantity).reshape(len(ours.tau), -1) for x in (ours, oracle.wrenches))
+            worst.see(_ratio(_finite_norm(mine - theirs), EPS * _norm(theirs)), first)
 
     def gaps(self, ours: LinkWrenches, oracle: Evaluation, bound: LinkWrenches) -> Iterator[Gap]:
         """The gap of each row, in the order of `rows`."""
         theirs, cancelled = oracle.wrenches, oracle.rounding
-        for column, (whole, link) in enumerate(self._wholes):
+        for column, shares in enumerate(self._shares):
             difference = np.abs(ours.tau[:, column] - theirs.tau[:, column])
-            x, x_bound = (_norm(getattr(result, whole)[:, link]) for result in (theirs, bound))
-            yield _gap(difference, np.abs(bound.tau[:, column]), x, x_bound + cancelled[whole][:, link])
+            own = np.abs(theirs.tau_joint[:, column])
+            size, allowance = own, HANDOVER * own
+            for weight, whole, link in shares:
+                x, x_bound = (_norm(getattr(result, whole)[:, link]) for result in (theirs, bound))
+                size = size + weight * x
+                allowance = allowance + weight * (x_bound + cancelled[whole][:, link])
+            yield _gap(difference, np.abs(bound.tau[:, column]), size, allowance)
         for key in ("F", "N", "f", "n"):
             for link in range(len(ours.links)):
                 mine, their, mine_bound = (getattr(result, key)[:, link] for result in (ours, theirs, bound))
@@ -124,13 +138,20 @@ class Comparison:
 
 
 def _gap(difference: Array, bound: Array, x: Array, x_bound: Array) -> Gap:
-    difference = np.where(np.isfinite(difference), difference, np.inf)  # an oracle's NaN is as far off as can be
+    difference = np.where(np.isfinite(difference), difference, np.inf)  # as far off as can be
     x = np.where(np.isfinite(x), x, 0.0)  # and must not widen the gate of what else is measured against it
     return Gap(difference, size=x, allowed=bound + (x_bound + HANDOVER * x))
 
 
+def _finite_norm(vectors: Array) -> Array:
+    """The norm; infinite where there is a NaN."""
+    norm = _norm(vectors)
+    return np.where(np.isfinite(norm), norm, np.inf)
+
+
 def _norm(vectors: Array) -> Array:
-    return np.linalg.norm(vectors, axis=-1)  # type: ignore[no-any-return]
+    norm: Array = np.linalg.norm(vectors, axis=-1)
+    return norm
 
 
 def _ratio(part: Array, whole: Array) -> Array:
@@ -140,10 +161,28 @@ def _ratio(part: Array, whole: Array) -> Array:
     return np.where(np.isnan(ratio), np.inf, ratio)
 
 
+Share = tuple[float, str, int]
+"""Weight, quantity (f or n) and link of a vector that a driving force is a component of."""
+
+
+def _shares(model: Model) -> list[list[Share]]:
+    """For each degree of freedom the vectors that its driving force is made of: its own, and those of followers."""
+    shares: dict[int, list[list[Share]]] = {
+        i: [[(1.0, "n" if rotates else "f", i)] for rotates in model.joints[i].type.rotations]
+        for i in model.independent
+    }
+    for i, joint in enumerate(model.joints):
+        if joint.mimic is not None:
+            weight = abs(joint.mimic.multiplier)
+            shares[joint.mimic.joint][0].append((weight, "n" if joint.type.rotates else "f", i))
+    return [freedom for i in model.independent for freedom in shares[i]]
+
+
 def _labels(model: Model) -> Iterator[tuple[str, str, str]]:
     """Quantity, place and unit of each row."""
     for joint in model.moving:
-        yield "tau", joint.name, joint.type.effort_unit
+        for label, rotates in zip(joint.v_labels(), joint.type.rotations, strict=True):
+            yield "tau", label, "N m" if rotates else "N"
     for quantity, unit in (("F", "N"), ("N", "N m"), ("f", "N"), ("n", "N m")):
         for name in model.link_names:
             yield quantity, name, unit

@@ -11,16 +11,21 @@ from importlib import metadata
 import numpy as np
 
 from rttrr_pin.arithmetic import Load
+from rttrr_pin.batch import blocks
 from rttrr_pin.certify import bounded_dynamics
 from rttrr_pin.errors import InputError
-from rttrr_pin.model import LinkWrenches, Wrench
+from rttrr_pin.model import Drive, LinkWrenches, Wrench
+from rttrr_pin.model.inputs import whole_number
 from rttrr_pin.oracles import Evaluation, Oracle, make_oracle
-from rttrr_pin.robot import Robot, blocks
-from rttrr_pin.validate.compare import Comparison, Gap, Row
-from rttrr_pin.validate.states import Sampler, States
+from rttrr_pin.robot import Robot
+from rttrr_pin.validate.compare import Comparison, Gap, Row, Worst
+from rttrr_pin.validate.states import LAST_STATE, Sampler, States
 
 BLOCK = 1024
 """States compared at a time; the memory of a run is that of one block, whatever the number of states."""
+
+HUGE = 1e140
+"""Numbers whose squares, times anything that occurs, stay within float64."""
 
 Progress = Callable[[int], None]
 """Called with the number of states done so far."""
@@ -32,30 +37,38 @@ class Validation:
 
     Attributes:
         robot: its name.
+        base: "fixed" or "floating".
+        gravity: the field in the base frame [m/s^2].
+        drives: by joint, what joints take themselves; those that take nothing are left out.
         oracle: name and version of the other program.
         n_states: how many states were compared.
         family: how they were drawn.
         seed: of the generator.
         payload: what the robot carried, in words.
         rows: what was seen of each quantity at each link or joint.
+        whole: by quantity, the largest error in eps, in the norm over all links or joints.
         seconds: wall time.
         versions: of what took part.
     """
 
     robot: str
+    base: str
+    gravity: tuple[float, ...]
+    drives: dict[str, Drive]
     oracle: str
     n_states: int
     family: str
     seed: int
     payload: str
     rows: tuple[Row, ...]
+    whole: dict[str, Worst]
     seconds: float
     versions: dict[str, str] = field(default_factory=dict)
 
     @property
     def agrees(self) -> bool:
-        """Whether every state of every row lies within the gate."""
-        return all(row.passed for row in self.rows)
+        """Whether there was something to compare, and every state of every row lies within the gate."""
+        return bool(self.rows) and all(row.passed for row in self.rows)
 
     @property
     def worst(self) -> Row | None:
@@ -71,7 +84,8 @@ class StateReport:
         robot: its name.
         oracle: name and version of the other program.
         index: which state.
-        joints: names of the moving joints.
+        q_names: names of the coordinates.
+        v_names: names of the rates and driving forces.
         states: q, v, a and payload, batches of one.
         ours: our result, a batch of one.
         theirs: the oracle's.
@@ -83,7 +97,8 @@ class StateReport:
     robot: str
     oracle: str
     index: int
-    joints: tuple[str, ...]
+    q_names: tuple[str, ...]
+    v_names: tuple[str, ...]
     states: States
     ours: LinkWrenches
     theirs: LinkWrenches
@@ -124,8 +139,7 @@ def validate(
         InputError: an argument cannot be used.
         OracleError: the oracle is missing, refuses the robot, or built another model than the file describes.
     """
-    if states < 1:
-        raise InputError(f"states is {states}: expected a whole number from 1, since none would prove nothing")
+    whole_number("states", states, 1, LAST_STATE, "10^15, since none would prove nothing")
     start = time.perf_counter()
     sampler, other, comparison = _prepare(robot, seed, family, payload, oracle)
     for part in blocks(states, BLOCK):
@@ -135,12 +149,16 @@ def validate(
             progress(part.stop)
     return Validation(
         robot=robot.name,
+        base="floating" if robot.model.floating else "fixed",
+        gravity=tuple(robot.model.gravity.tolist()),
+        drives={joint.name: joint.drive for joint in robot.model.joints if joint.drive != Drive()},
         oracle=f"{other.name} {other.version}",
         n_states=states,
         family=family,
         seed=seed,
         payload=_in_words(payload),
         rows=tuple(comparison.rows),
+        whole=comparison.whole,
         seconds=time.perf_counter() - start,
         versions=versions(other),
     )
@@ -160,15 +178,26 @@ def compare_state(
         InputError: an argument cannot be used.
         OracleError: as in `validate`.
     """
-    if index < 0:
-        raise InputError(f"state is {index}: states are counted from 0")
+    whole_number("state", index, 0, LAST_STATE, "10^15")
     sampler, other, comparison = _prepare(robot, seed, family, payload, oracle)
     drawn = sampler.draw(index, 1)
     ours, theirs, bound = _both(robot, other, drawn)
     gaps = tuple(comparison.gaps(ours, theirs, bound))
     label = f"{other.name} {other.version}"
     rows = tuple(comparison.rows)
-    return StateReport(robot.name, label, index, robot.joint_names, drawn, ours, theirs.wrenches, bound, rows, gaps)
+    return StateReport(
+        robot.name,
+        label,
+        index,
+        robot.model.q_names,
+        robot.model.v_names,
+        drawn,
+        ours,
+        theirs.wrenches,
+        bound,
+        rows,
+        gaps,
+    )
 
 
 def versions(oracle: Oracle) -> dict[str, str]:
@@ -185,6 +214,10 @@ def versions(oracle: Oracle) -> dict[str, str]:
 def _prepare(
     robot: Robot, seed: int, family: str, payload: Wrench | str | None, oracle: str
 ) -> tuple[Sampler, Oracle, Comparison]:
+    if not isinstance(robot, Robot):
+        raise InputError(f"robot is a {type(robot).__name__}: pass a Robot, such as rttrr_pin.load({robot!r})")
+    if not robot.model.links:
+        raise InputError(f"robot {robot.name!r} has no joint, so that there is nothing to compare")
     sampler = Sampler(robot.model, family, seed, _payload(robot, payload))
     return sampler, make_oracle(oracle, robot.model), Comparison(robot.model)
 
@@ -215,5 +248,18 @@ def _both(robot: Robot, oracle: Oracle, drawn: States) -> tuple[LinkWrenches, Ev
     """Ours, the oracle's, and the bound on ours."""
     with np.errstate(over="ignore", invalid="ignore"):  # what overflows is shown as a failure, with its state
         ours, bound = bounded_dynamics(robot.model, drawn.q, drawn.v, drawn.a, drawn.loads)
+        _check_size(ours, drawn.first)
         theirs = oracle.evaluate(drawn.q, drawn.v, drawn.a, drawn.loads)
     return ours, theirs, bound
+
+
+def _check_size(ours: LinkWrenches, first: int) -> None:
+    """Norms square what they are of: numbers whose squares overflow cannot be compared."""
+    for key, x in ours.items():
+        sizes = np.abs(x).reshape(len(x), -1).max(axis=1, initial=0.0)
+        if not (sizes <= HUGE).all():
+            row = int(np.argmax(~(sizes <= HUGE)))
+            raise InputError(
+                f"{key} reaches {sizes[row]:.1e} in state {first + row}, beyond {HUGE:.0e}, which no norm can hold: "
+                "pass gravity, payload and masses of a size that a robot can have"
+            )

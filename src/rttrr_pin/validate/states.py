@@ -14,8 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rttrr_pin.arithmetic import Load
-from rttrr_pin.errors import InputError, UnknownNameError
-from rttrr_pin.model import Joint, Model
+from rttrr_pin.errors import UnknownNameError
+from rttrr_pin.model import Joint, JointType, Model
+from rttrr_pin.model.inputs import whole_number
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
@@ -39,6 +40,10 @@ LARGE_VELOCITY = 100.0
 """Times the velocity limit: velocity terms then rule, as gravity does at rest."""
 
 
+LAST_STATE = 10**15
+"""More than anyone can compute, and far below what an index holds."""
+
+
 @dataclass(frozen=True, slots=True)
 class States:
     """Some states in a row.
@@ -60,20 +65,26 @@ class States:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Ranges:
-    """From where to where each joint goes, (nv,) each."""
+    """From where to where each degree of freedom goes, (nv,) each.
+
+    A floating joint's rotation is drawn as a rotation vector, and becomes a quaternion at the end.
+    """
 
     lower: Array
     upper: Array
     rate: Array
     acceleration: Array
+    angle: NDArray[np.bool_]
 
     @classmethod
     def of(cls, model: Model) -> Ranges:
         """The limits of the file, and finite defaults where it has none."""
-        lower, upper = np.array([_range(joint) for joint in model.moving]).reshape(-1, 2).T
-        rate = [_finite_or(joint.limits.velocity, DEFAULT_RATE[joint.type.unit]) for joint in model.moving]
-        acceleration = [DEFAULT_ACCELERATION[joint.type.unit] for joint in model.moving]
-        return cls(lower, upper, np.array(rate), np.array(acceleration))
+        freedoms = [(joint, "rad" if rotates else "m") for joint in model.moving for rotates in joint.type.rotations]
+        lower, upper = np.array([_range(joint, unit) for joint, unit in freedoms]).reshape(-1, 2).T
+        rate = [_finite_or(joint.limits.velocity, DEFAULT_RATE[unit]) for joint, unit in freedoms]
+        acceleration = [DEFAULT_ACCELERATION[unit] for _, unit in freedoms]
+        angle = np.array([unit == "rad" for _, unit in freedoms], dtype=bool)
+        return cls(lower, upper, np.array(rate), np.array(acceleration), angle)
 
 
 Triple = tuple[Array, Array, Array]
@@ -88,12 +99,12 @@ def _uniform(unit: Array, k: Indices, ranges: Ranges) -> Triple:
 
 
 def _corners(unit: Array, k: Indices, ranges: Ranges) -> Triple:
-    """Each at its lower end, zero, or its upper end; coordinates also at plus or minus a right angle."""
+    """Each at its lower end, zero, or its upper end; angles also at plus or minus a right angle. All within limits."""
     q, v, a = np.split(unit, 3, axis=1)
     zero = np.zeros_like(ranges.lower)
-    places = np.stack([ranges.lower, ranges.upper, zero, zero + math.pi / 2, zero - math.pi / 2])
-    joints = np.arange(len(zero))
-    at = places[(q * len(places)).astype(int), joints]
+    right = np.where(ranges.angle, math.pi / 2, 0.0)
+    places = np.clip(np.stack([ranges.lower, ranges.upper, zero, right, -right]), ranges.lower, ranges.upper)
+    at = places[(q * len(places)).astype(int), np.arange(len(zero))]
     return at, (np.floor(3 * v) - 1) * ranges.rate, (np.floor(3 * a) - 1) * ranges.acceleration
 
 
@@ -157,23 +168,33 @@ class Sampler:
             UnknownNameError: there is no such family or link.
             InputError: the seed is out of range.
         """
-        if family not in FAMILIES:
+        if not isinstance(family, str) or family not in FAMILIES:
             raise UnknownNameError("family of states", family, FAMILIES)
-        if not 0 <= seed < 2**128:
-            raise InputError(f"seed is {seed}: expected a whole number from 0 to 2^128 - 1")
+        seed = whole_number("seed", seed, 0, 2**128 - 1, "2^128 - 1")
         self.model, self.family, self.seed = model, family, seed
         self._payload = payload if not isinstance(payload, str) else model.link_index(payload)
         self._ranges = Ranges.of(model)
 
     def draw(self, first: int, count: int) -> States:
         """The states first, first + 1, ..., first + count - 1."""
+        whole_number("state", first, 0, LAST_STATE, "10^15")
         nv = self.model.nv
         counters = -(-(3 * nv + 6) // PER_COUNTER)  # of one state, payload included whether it is used or not
         generator = np.random.Generator(np.random.Philox(key=self.seed, counter=first * counters))
         unit = generator.random((count, counters * PER_COUNTER))
         k = first + np.arange(count, dtype=np.int64)
         q, v, a = FAMILIES[self.family](unit[:, : 3 * nv], k, self._ranges)
-        return States(first, q, v, a, self._loads(2 * unit[:, 3 * nv : 3 * nv + 6] - 1))
+        return States(first, self._coordinates(q), v, a, self._loads(2 * unit[:, 3 * nv : 3 * nv + 6] - 1))
+
+    def _coordinates(self, q: Array) -> Array:
+        """One number for each degree of freedom as the joints' coordinates."""
+        columns, at = [], 0
+        for joint in self.model.moving:
+            own = q[:, at : at + joint.nv]
+            floating = joint.type is JointType.FLOATING
+            columns.append(np.hstack([own[:, :3], _quaternions(own[:, 3:])]) if floating else own)
+            at += joint.nv
+        return np.hstack(columns) if columns else q
 
     def _loads(self, unit: Array) -> tuple[Load, ...]:
         if self._payload is None:
@@ -184,11 +205,20 @@ class Sampler:
         return (Load(self._payload, unit[:, :3] * force, unit[:, 3:] * moment),)
 
 
-def _range(joint: Joint) -> tuple[float, float]:
+def _quaternions(turns: Array) -> Array:
+    """Unit quaternions (x, y, z, w) of rotation vectors, (N, 3) [rad]."""
+    half = np.linalg.norm(turns, axis=1, keepdims=True) / 2
+    vector = turns / 2 * np.sinc(half / np.pi)
+    q = np.hstack([vector, np.cos(half)])
+    unit: Array = q / np.linalg.norm(q, axis=1, keepdims=True)
+    return unit
+
+
+def _range(joint: Joint, unit: str) -> tuple[float, float]:
     """A finite range of coordinates."""
     lower, upper = joint.limits.lower, joint.limits.upper
-    half = DEFAULT_RANGE[joint.type.unit]
-    if lower == upper == 0.0 or (math.isinf(lower) and math.isinf(upper)):
+    half = DEFAULT_RANGE[unit]
+    if lower == upper == 0.0 or (math.isinf(lower) and math.isinf(upper)) or joint.nv > 1:
         return -half, half
     if math.isinf(lower):
         return upper - 2 * half, upper

@@ -1,0 +1,194 @@
+"""Joints as data: how they move, what limits them, whom they follow, and what they add to their driving force."""
+
+from __future__ import annotations
+
+import enum
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.errors import InputError
+
+Array = NDArray[np.float64]
+
+
+class JointType(enum.StrEnum):
+    """How a joint moves; the values are URDF's words."""
+
+    REVOLUTE = "revolute"
+    CONTINUOUS = "continuous"
+    PRISMATIC = "prismatic"
+    PLANAR = "planar"
+    FLOATING = "floating"
+    FIXED = "fixed"
+
+    @property
+    def rotates(self) -> bool:
+        """Whether it has one coordinate, and that is an angle."""
+        return self in (JointType.REVOLUTE, JointType.CONTINUOUS)
+
+    @property
+    def q_slots(self) -> tuple[str, ...]:
+        """What its coordinates are called; one nameless slot where there is one."""
+        return Q_SLOTS.get(self, ("",))
+
+    @property
+    def v_slots(self) -> tuple[str, ...]:
+        """What its rates, accelerations and driving forces are called."""
+        return V_SLOTS.get(self, ("",))
+
+    @property
+    def rotations(self) -> tuple[bool, ...]:
+        """For each rate, whether it is of an angle [rad]; else it is of a length [m]."""
+        return tuple(slot.startswith(("r", "theta")) or (not slot and self.rotates) for slot in self.v_slots)
+
+
+Q_SLOTS = {
+    JointType.PLANAR: ("x", "y", "theta"),
+    JointType.FLOATING: ("x", "y", "z", "qx", "qy", "qz", "qw"),
+    JointType.FIXED: (),
+}
+"""Coordinates of joints that have not just one: position [m], angle [rad], unit quaternion."""
+
+V_SLOTS = {
+    JointType.PLANAR: ("x", "y", "theta"),
+    JointType.FLOATING: ("x", "y", "z", "rx", "ry", "rz"),
+    JointType.FIXED: (),
+}
+"""Rates of the same: a twist in the child frame, linear before angular, as Pinocchio has it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """What a joint may do; infinite where the file sets no limit.
+
+    Attributes:
+        lower: smallest coordinate [rad or m].
+        upper: largest coordinate [rad or m].
+        velocity: largest rate [rad/s or m/s].
+        effort: largest torque or force [N m or N].
+    """
+
+    lower: float = -math.inf
+    upper: float = math.inf
+    velocity: float = math.inf
+    effort: float = math.inf
+
+
+@dataclass(frozen=True, slots=True)
+class Mimic:
+    """The coordinate of a joint that follows another: multiplier times that joint's, plus offset.
+
+    Attributes:
+        joint: index of the joint it follows, which follows none itself.
+        multiplier: ratio of the rates.
+        offset: [rad or m].
+        rounded: whether both are the rounded result of a chain of mimics, and no longer the file's numbers.
+    """
+
+    joint: int
+    multiplier: float = 1.0
+    offset: float = 0.0
+    rounded: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Drive:
+    """What a joint itself adds to its driving force; the bearing does not see it.
+
+        tau_joint = armature a + damping v + friction sign(v)
+
+    Attributes:
+        armature: reflected inertia of rotor and gears, rotor inertia times gear ratio squared [kg m^2 or kg].
+        damping: viscous friction [N m s/rad or N s/m].
+        friction: Coulomb friction, none at rest [N m or N].
+    """
+
+    armature: float = 0.0
+    damping: float = 0.0
+    friction: float = 0.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Joint:
+    """A joint, and where it sits on the link that carries it.
+
+    Attributes:
+        name: its name in the file.
+        type: how it moves.
+        parent: index of the parent link in `Model.links`; -1 where the parent is the root link.
+        R: R_parent_i at coordinate zero: maps vectors of the joint frame to the parent link frame, (3, 3).
+        p: p_parent_i at coordinate zero: from the parent link's origin to the joint's, in the parent frame, (3,) [m].
+        axis: the unit vector that the joint turns about or slides along, in {i}, (3,).
+        limits: what it may do.
+        rotated: whether `R` was computed from a non-zero rpy (else it is exactly the identity).
+        mimic: the joint that it follows, if any.
+        dynamics: damping and friction as the file gives them, whether they take part or not.
+        drive: what the joint itself adds to its driving force.
+    """
+
+    name: str
+    type: JointType
+    parent: int = -1
+    R: Array = field(default_factory=lambda: np.eye(3))
+    p: Array = field(default_factory=lambda: np.zeros(3))
+    axis: Array = field(default_factory=lambda: np.array([1.0, 0.0, 0.0]))
+    limits: Limits = Limits()
+    rotated: bool = False
+    mimic: Mimic | None = None
+    dynamics: Drive = Drive()
+    drive: Drive = Drive()
+
+    def __post_init__(self) -> None:
+        for name, shape in (("R", (3, 3)), ("p", (3,)), ("axis", (3,))):
+            object.__setattr__(self, name, frozen(getattr(self, name), shape, f"{name} of joint {self.name!r}"))
+        if self.type in AXIAL and abs(np.linalg.norm(self.axis) - 1.0) > 1e-9:
+            raise InputError(
+                f"axis of joint {self.name!r} is {self.axis.tolist()}, of length {np.linalg.norm(self.axis):.6g}; "
+                "expected a unit vector: divide it by its length"
+            )
+        if self.type is JointType.PLANAR and self.axis.tolist() != [0.0, 0.0, 1.0]:
+            raise InputError(
+                f"axis of planar joint {self.name!r} is {self.axis.tolist()}, expected [0, 0, 1]: turn the joint by R"
+            )
+        if not np.allclose(self.R @ self.R.T, np.eye(3), rtol=0.0, atol=1e-9) or np.linalg.det(self.R) < 0.0:
+            raise InputError(f"R of joint {self.name!r} is {self.R.tolist()}: expected a rotation")
+
+    @property
+    def nq(self) -> int:
+        """The number of its coordinates, its own or those it takes from the joint it follows."""
+        return len(self.type.q_slots)
+
+    @property
+    def nv(self) -> int:
+        """The number of its rates."""
+        return len(self.type.v_slots)
+
+    @property
+    def independent(self) -> bool:
+        """Whether it moves, and follows no other joint."""
+        return self.nv > 0 and self.mimic is None
+
+    def q_labels(self) -> list[str]:
+        """Names of its coordinates: its own name, with the slot behind where there are several."""
+        return [f"{self.name}.{slot}" if slot else self.name for slot in self.type.q_slots]
+
+    def v_labels(self) -> list[str]:
+        """Names of its rates."""
+        return [f"{self.name}.{slot}" if slot else self.name for slot in self.type.v_slots]
+
+
+AXIAL = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
+"""Joints that have an axis and one coordinate."""
+
+
+def frozen(values: Array, shape: tuple[int, ...], name: str) -> Array:
+    """A read-only float64 copy of the wanted shape."""
+    array = np.array(values, dtype=np.float64)
+    if array.shape != shape or not np.isfinite(array).all():
+        raise InputError(f"{name} is {np.asarray(values).tolist()}: expected {shape} finite numbers")
+    array += 0.0  # -0.0, a by-product of some rotations, becomes 0.0
+    array.setflags(write=False)
+    return array
