@@ -47,7 +47,12 @@ def cost_table() -> list[str]:
 
 def robots_table() -> list[str]:
     robots, trees = _result("example_robots"), _result("random_trees")
-    stopped = sorted({entry["name"] for entry in robots["entries"] if entry["verdict"] == "unusable"})
+    by_name: dict[str, list[dict[str, Any]]] = {}
+    for entry in robots["entries"]:
+        by_name.setdefault(entry["name"], []).append(entry)
+    unusable = {name: [e for e in both if e["verdict"] == "unusable"] for name, both in by_name.items()}
+    stopped = sorted(name for name, found in unusable.items() if len(found) == len(by_name[name]))
+    partly = sorted(name for name, found in unusable.items() if found and name not in stopped)
     compared = robots["files"] - len(stopped)
     found = [entry for entry in robots["entries"] if entry.get("defect")]
     defects = {entry["name"]: entry["defect"].split(": ", 2)[-1] for entry in found}
@@ -71,7 +76,9 @@ def robots_table() -> list[str]:
         f"{len(stopped)} of the {robots['files']} are stopped by a defect of their file:",
         "",
     ]
-    return lines + [f"- `{name}`: {defects[name]}" for name in stopped]
+    lines += [f"- `{name}`: {defects[name]}" for name in stopped]
+    told = {name: f"`{name}` agrees on a floating base; on a fixed one it has no joint to compare." for name in partly}
+    return [*lines, "", *told.values()] if told else lines
 
 
 TABLES = {"agreement": agreement_table, "cost": cost_table, "robots": robots_table}

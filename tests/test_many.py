@@ -100,8 +100,11 @@ def test_the_saved_run_accounts_for_all_example_robots(repository: Path) -> None
     assert len(result["entries"]) == 138
     assert result["states"] == 10_000
     assert {entry["verdict"] for entry in result["entries"]} == {"agree", "unusable"}
-    stopped = {entry["name"]: entry["defect"] for entry in result["entries"] if entry["verdict"] == "unusable"}
-    assert all("line" in defect for defect in stopped.values())
+    stopped = [entry for entry in result["entries"] if entry["verdict"] == "unusable"]
+    without_joint = [entry for entry in stopped if "has no joint" in entry["defect"]]
+    assert {entry["base"] for entry in without_joint} <= {"fixed"}  # one body: it agrees on its floating base
+    assert all(", line " in entry["defect"] for entry in stopped if entry not in without_joint)
+    assert len({entry["name"] for entry in stopped}) <= 3
     trees = json.loads((repository / "benchmarks/results/random_trees.json").read_text())
     assert trees["trees"] == 1000
     assert trees["disagree"] == []

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.inspect.exact import Shape, shape_of
+from rttrr_pin.inspect.exact import Shape
 from rttrr_pin.inspect.reading import Document
 from rttrr_pin.inspect.results import LinkRow
 
@@ -42,7 +42,7 @@ def tree(document: Document) -> Iterator[LinkRow]:
             joint_type="" if joint is None else joint.type,
             mass=mass,
             com=np.zeros(3) if inertial is None else np.array(inertial.com),
-            shape=Shape.FRAME if inertial is None else shape_of(inertial.mass.exact, inertial.exact),
+            shape=Shape.FRAME if inertial is None else inertial.shape,
             moments=moments,
             axes=axes,
             semi_axes=semi_axes(mass, moments),

@@ -39,7 +39,7 @@ def _inertials(document: Document) -> Iterator[tuple[str, Mass]]:
 
 def _products(tensor: Array) -> float:
     """The largest product of inertia."""
-    return float(np.abs(tensor[np.triu_indices(3, 1)]).max())
+    return float(max(abs(tensor[0, 1]), abs(tensor[0, 2]), abs(tensor[1, 2])))
 
 
 def _sorted_moments(tensor: Array, negligible: float) -> Array:

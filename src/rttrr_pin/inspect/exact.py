@@ -92,14 +92,13 @@ def rank_if_positive(matrix: Matrix) -> int | None:
     return rank
 
 
-def shape_of(mass: Fraction, inertia: Matrix) -> Shape:
-    """What body has this mass and this inertia about its centre of mass.
+def shape_of(mass: Fraction, rank: int | None) -> Shape:
+    """What body has this mass, and second moments of this rank about its centre of mass.
 
     Args:
         mass: [kg], exact.
-        inertia: [kg m^2], exact, in any axes.
+        rank: of Sigma; None where it is not positive semidefinite.
     """
-    rank = rank_if_positive(second_moments(inertia))
     if mass < 0 or rank is None or (mass == 0 and rank > 0):
         return Shape.IMPOSSIBLE
     if mass == 0:

@@ -8,7 +8,7 @@ from fractions import Fraction
 from rttrr_pin.inspect.bodies import principal
 from rttrr_pin.inspect.check import Check, Observation, Subject
 from rttrr_pin.inspect.decimals import text_of
-from rttrr_pin.inspect.exact import Shape, rank_if_positive, second_moments, shape_of
+from rttrr_pin.inspect.exact import Shape
 from rttrr_pin.inspect.reading import Body, Mass
 from rttrr_pin.inspect.results import Edit, Severity
 
@@ -59,7 +59,7 @@ def moving_without_mass(subject: Subject) -> Iterator[Observation]:
 def indefinite(subject: Subject) -> Iterator[Observation]:
     """A negative moment of inertia about some axis."""
     for body, inertial in _inertials(subject):
-        if rank_if_positive(inertial.exact) is None and inertial.mended is None:
+        if not inertial.positive and inertial.mended is None:
             yield Observation(
                 body, float(principal(inertial.written)[0][0]), "kg m^2",
                 "the smallest principal moment is negative: the tensor is not positive definite",
@@ -83,7 +83,7 @@ def triangle(subject: Subject) -> Iterator[Observation]:
 def triangle_by_rounding(subject: Subject) -> Iterator[Observation]:
     """No body has these digits, but one has numbers that round to them."""
     for body, inertial in _inertials(subject):
-        if rank_if_positive(second_moments(inertial.exact)) is None:
+        if inertial.rank is None:
             mended = inertial.mended
             if mended is not None:
                 low, mid, high = principal(inertial.written)[0]
@@ -105,7 +105,7 @@ def _repair(link: str, inertial: Mass, mended: dict[str, Fraction]) -> tuple[Edi
 
 
 def _positive_but_impossible(inertial: Mass) -> bool:
-    return rank_if_positive(inertial.exact) is not None and rank_if_positive(second_moments(inertial.exact)) is None
+    return inertial.positive and inertial.rank is None
 
 
 BOUNDARY = {
@@ -117,7 +117,7 @@ BOUNDARY = {
 def boundary(subject: Subject) -> Iterator[Observation]:
     """Flat plates and thin rods, which are possible and at the very edge."""
     for body, inertial in _inertials(subject):
-        shape = shape_of(inertial.mass.exact, inertial.exact)
+        shape = inertial.shape
         if shape in BOUNDARY:
             yield Observation(
                 body, None, "", BOUNDARY[shape],
@@ -128,7 +128,7 @@ def boundary(subject: Subject) -> Iterator[Observation]:
 def point_mass(subject: Subject) -> Iterator[Observation]:
     """Mass, but no tensor."""
     for body, inertial in _inertials(subject):
-        if shape_of(inertial.mass.exact, inertial.exact) is Shape.POINT:
+        if inertial.shape is Shape.POINT:
             yield Observation(
                 body, float(inertial.mass), "kg", "there is a mass, but the inertia is zero: a point",
                 "write the inertia about the centre of mass",

@@ -12,7 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rttrr_pin.inspect.decimals import Number
-from rttrr_pin.inspect.exact import Matrix, symmetric, within_rounding
+from rttrr_pin.inspect.exact import (
+    Matrix,
+    Shape,
+    rank_if_positive,
+    second_moments,
+    shape_of,
+    symmetric,
+    within_rounding,
+)
 from rttrr_pin.model.document import parse_xml
 from rttrr_pin.model.solids import Triple, rotation
 from rttrr_pin.model.sources import Source
@@ -45,6 +53,21 @@ class Mass:
     def exact(self) -> Matrix:
         """The tensor in the inertial frame, in rationals."""
         return symmetric({name: number.exact for name, number in self.entries.items()})
+
+    @cached_property
+    def positive(self) -> bool:
+        """Whether the tensor is positive semidefinite, exactly."""
+        return rank_if_positive(self.exact) is not None
+
+    @cached_property
+    def rank(self) -> int | None:
+        """The rank of the second moments about the centre of mass; None where they are not positive semidefinite."""
+        return rank_if_positive(second_moments(self.exact))
+
+    @property
+    def shape(self) -> Shape:
+        """What body has this mass and inertia, exactly."""
+        return shape_of(self.mass.exact, self.rank)
 
     @cached_property
     def mended(self) -> dict[str, Fraction] | None:
