@@ -70,6 +70,7 @@ FILES = {
     "fixed tip on a frame": arm("", extra=tip(inertial(0.5))),
     "fixed tip, triangle": arm(GOOD, extra=tip(inertial(1, diagonal(1, 1, 3)))),
     "fixed tip, negative mass": arm(GOOD, extra=tip(inertial(-0.1))),
+    "fixed tip, more negative mass than the arm has": arm(GOOD, extra=tip(inertial(-2))),
     "fixed tip, tensor without mass": arm(GOOD, extra=tip(inertial(0))),
     "fixed tip, point": arm(GOOD, extra=tip(inertial(1, ZERO))),
     "fixed tip, frame": arm(GOOD, extra=tip("")),

@@ -49,6 +49,15 @@ def _sorted_moments(tensor: Array, negligible: float) -> Array:
     return principal(tensor)[0]
 
 
+def pinocchio_sum(document: Document) -> Iterator[str]:
+    """Moving links that are merged with others, and have no positive mass then."""
+    for name, lump in lumps(document).items():
+        inertials = [document.links[member].inertial for member in lump.members]
+        massive = sum(inertial is not None and inertial.mass.exact != 0 for inertial in inertials)
+        if name != document.root and massive > 1 and lump.mass <= EPS:
+            yield name
+
+
 def _mujoco_margins(tensor: Array) -> tuple[float, float, float]:
     """How far MuJoCo's two tests are fulfilled, and by how much its rounding may move that."""
     low, mid, high = (float(x) for x in _sorted_moments(tensor, 0.0))
