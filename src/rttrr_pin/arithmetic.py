@@ -25,6 +25,9 @@ Array = NDArray[np.float64]
 UNIT_ROUNDOFF = 2.0**-53
 """u: the relative error of one correctly rounded float64 operation; eps is 2 u."""
 
+EPS = 2 * UNIT_ROUNDOFF
+"""The distance from 1 to the next float64: the unit in which errors are told."""
+
 ROTATION_ERROR = 8 * UNIT_ROUNDOFF
 """Of an entry of a rotation matrix made from rpy: a sum of two products of sines and cosines, each within an ulp."""
 

@@ -24,6 +24,7 @@ from numpy.typing import NDArray
 from rttrr_pin.algebra import Scalar, Vector
 from rttrr_pin.arithmetic import UNIT_ROUNDOFF, Arithmetic, Load, evaluate
 from rttrr_pin.model import LinkWrenches, Model
+from rttrr_pin.model.wrench import LINK_QUANTITIES
 
 Array = NDArray[np.float64]
 Real: TypeAlias = Any  # float | Array: what NumPy's stubs cannot combine without casts
@@ -137,7 +138,7 @@ def bounded_dynamics(
     values, bounds = {}, {}
     for key in ("tau", "tau_joint"):
         values[key], bounds[key] = _columns(getattr(result, key), rows)
-    for key in ("F", "N", "f", "n"):
+    for key in LINK_QUANTITIES:
         vectors: list[Vector] = getattr(result, key)
         value, bound = _columns([scalar for vector in vectors for scalar in vector], rows)
         values[key], bounds[key] = value.reshape(rows, -1, 3), bound.reshape(rows, -1, 3)

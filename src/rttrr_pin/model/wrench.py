@@ -88,7 +88,7 @@ class LinkWrenches:
         """
         if name in self.links:
             i = self.links.index(name)
-            return {key: getattr(self, key)[..., i, :] for key in ("F", "N", "f", "n")}
+            return {key: getattr(self, key)[..., i, :] for key in LINK_QUANTITIES}
         if name in self.joints:
             return {"tau": self.tau[..., self.joints.index(name)]}
         raise UnknownNameError("link or moving joint", name, (*self.links, *self.joints))

@@ -22,14 +22,14 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from rttrr_pin.arithmetic import Load
+from rttrr_pin.arithmetic import EPS, Load
 from rttrr_pin.errors import ModelMismatchError, OracleError
 from rttrr_pin.model import LinkWrenches, Model
 from rttrr_pin.model.tree import ROOT_JOINT, UNIVERSE
 from rttrr_pin.oracles import Evaluation
 from rttrr_pin.oracles.pinocchio_joints import Motion, driving_forces, expand, pin_joints, reach, reduce_forces
 from rttrr_pin.oracles.pinocchio_model import differences, pin_links, product
-from rttrr_pin.oracles.pinocchio_rounding import EPS, OPERATIONS, rounding
+from rttrr_pin.oracles.pinocchio_rounding import OPERATIONS, rounding
 
 Array = NDArray[np.float64]
 

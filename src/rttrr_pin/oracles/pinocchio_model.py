@@ -10,12 +10,13 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import ArrayLike, NDArray
 
+from rttrr_pin.arithmetic import EPS
 from rttrr_pin.model import Joint, JointType, Model
 from rttrr_pin.model.joint import AXIAL
 
 Array = NDArray[np.float64]
 
-TOLERANCE = 64 * float(np.finfo(float).eps)
+TOLERANCE = 64 * EPS
 """Relative; merging inertias over fixed joints and turning them by rpy rounds a few times."""
 
 

@@ -20,11 +20,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rttrr_pin.arithmetic import EPS
 from rttrr_pin.oracles.pinocchio_model import PinLink
 
 Array = NDArray[np.float64]
-
-EPS = float(np.finfo(float).eps)
 
 OPERATIONS = 4
 """Roundings on the way of each term over one joint: a vector product, a sum, a change of frame."""

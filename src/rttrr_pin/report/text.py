@@ -12,6 +12,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rttrr_pin.model import QUANTITIES, STANDARD_GRAVITY
+from rttrr_pin.model.wrench import LINK_QUANTITIES
 from rttrr_pin.validate import Row, StateReport, Validation
 
 Array = NDArray[np.float64]
@@ -138,7 +139,7 @@ def _values(report: StateReport) -> Iterable[tuple[Array, Array]]:
     ours, theirs = report.ours, report.theirs
     for column in range(ours.tau.shape[1]):
         yield ours.tau[0, column, None], theirs.tau[0, column, None]
-    for key in ("F", "N", "f", "n"):
+    for key in LINK_QUANTITIES:
         yield from zip(getattr(ours, key)[0], getattr(theirs, key)[0], strict=True)
 
 

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from rttrr_pin.validate.compare import EPS, Comparison, Row
+from rttrr_pin.arithmetic import EPS
+from rttrr_pin.validate.compare import Comparison, Row
 from rttrr_pin.validate.many import BASES, Entry, Task, validate_many
 from rttrr_pin.validate.run import StateReport, Validation, compare_state, validate
 from rttrr_pin.validate.states import FAMILIES, Sampler

@@ -20,12 +20,12 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from rttrr_pin.arithmetic import EPS
 from rttrr_pin.model import QUANTITIES, LinkWrenches, Model
+from rttrr_pin.model.wrench import LINK_QUANTITIES
 from rttrr_pin.oracles import Evaluation
 
 Array = NDArray[np.float64]
-
-EPS = float(np.finfo(float).eps)
 
 HANDOVER = 4 * EPS
 """Relative: payloads, placements and angles are rounded on their way into the oracle's conventions."""
@@ -130,7 +130,7 @@ class Comparison:
                 size = size + weight * x
                 allowance = allowance + weight * (x_bound + cancelled[whole][:, link])
             yield _gap(difference, np.abs(bound.tau[:, column]), size, allowance)
-        for key in ("F", "N", "f", "n"):
+        for key in LINK_QUANTITIES:
             for link in range(len(ours.links)):
                 mine, their, mine_bound = (getattr(result, key)[:, link] for result in (ours, theirs, bound))
                 x_bound = _norm(mine_bound)
