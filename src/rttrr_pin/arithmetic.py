@@ -44,12 +44,14 @@ class Arithmetic:
         column: from the values of one coordinate: a float (one state) or an array (a batch).
         sincos: sine and cosine of such a column.
         sign: -1, 0 or 1 by the sign of a scalar's value.
+        keep: what stands for a finished w, w_dot, v_dot, F, N, f or n.
     """
 
     number: Callable[[float, float], Scalar]
     column: Callable[[float | Array], Scalar]
     sincos: SinCos
     sign: Callable[[Scalar], Scalar]
+    keep: Callable[[Vector], Vector] = lambda x: x
 
 
 def _float_sincos(q: float | Array) -> tuple[float | Array, float | Array]:
@@ -124,21 +126,52 @@ def evaluate(model: Model, arithmetic: Arithmetic, q: Array, v: Array, a: Array,
     Returns:
         The five quantities in scalars of that kind; what no state changes may be a plain number.
     """
-    states = _joint_states(model, arithmetic, q, v, a)
     payloads = [
         Payload(load.link, _vector(load.f, arithmetic), _vector(load.n, arithmetic), load.in_base) for load in loads
     ]
+    q_, v_, a_ = ([arithmetic.column(column) for column in _columns(x)] for x in (q, v, a))
+    return dynamics(model, arithmetic, q_, v_, a_, payloads)
+
+
+def dynamics(
+    model: Model,
+    arithmetic: Arithmetic,
+    q: Sequence[Scalar],
+    v: Sequence[Scalar],
+    a: Sequence[Scalar],
+    payloads: Sequence[Payload] = (),
+    links: Sequence[Body] | None = None,
+) -> Result:
+    """The specification on scalars.
+
+    Args:
+        model: the robot.
+        arithmetic: the kind of scalar.
+        q: a scalar for each coordinate.
+        v: a scalar for each rate.
+        a: a scalar for each acceleration.
+        payloads: what the robot exerts on its surroundings.
+        links: bodies to take instead of the model's own.
+
+    Returns:
+        The five quantities in scalars of that kind; what no state changes may be a plain number.
+    """
+    states = _joint_states(model, arithmetic, q, v, a)
     gravity = Vector.of(model.gravity, lambda value: arithmetic.number(value, 0.0))
-    result = newton_euler(bodies(model, arithmetic), states, gravity, payloads, arithmetic.sincos)
+    result = newton_euler(
+        links or bodies(model, arithmetic), states, gravity, payloads, arithmetic.sincos, arithmetic.keep
+    )
     own = [_drive(joint, state, arithmetic) for joint, state in zip(model.joints, states, strict=True)]
     across, tau_joint = (_generalised(model, arithmetic, forces) for forces in (result.tau, own))
     tau = [x + y for x, y in zip(across, tau_joint, strict=True)]
     return Result(tau, tau_joint, result.F, result.N, result.f, result.n)
 
 
-def _joint_states(model: Model, arithmetic: Arithmetic, q: Array, v: Array, a: Array) -> list[JointState]:
+def _joint_states(
+    model: Model, arithmetic: Arithmetic, q: Sequence[Scalar], v: Sequence[Scalar], a: Sequence[Scalar]
+) -> list[JointState]:
     """The columns of q, v, a by joint; a joint that follows another has its columns made from that one's."""
-    q_, v_, a_ = (iter([arithmetic.column(column) for column in _columns(x)]) for x in (q, v, a))
+    q_, v_, a_ = iter(q), iter(v), iter(a)
     own: dict[int, JointState] = {}
     for i in model.independent:
         nq, nv = model.joints[i].nq, model.joints[i].nv

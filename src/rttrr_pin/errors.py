@@ -18,6 +18,10 @@ class InputError(RttrrError, ValueError):
     """A value that was passed cannot be used."""
 
 
+class CacheWarning(UserWarning):
+    """Compiled kernels cannot be kept on disk; all else goes on."""
+
+
 class ShapeError(InputError):
     """An array has the wrong shape.
 

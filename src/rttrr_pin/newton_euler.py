@@ -10,7 +10,7 @@ Nothing here asks what its scalars are: the same lines run on floats, on arrays 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from rttrr_pin.algebra import ZERO, Scalar, Vector
@@ -51,6 +51,7 @@ def newton_euler(
     gravity: Vector,
     payloads: Sequence[Payload],
     sincos: SinCos,
+    keep: Callable[[Vector], Vector] = lambda x: x,
 ) -> Wrenches:
     """Inverse dynamics of a tree: the forces and moments on every link, and what drives every joint.
 
@@ -60,6 +61,7 @@ def newton_euler(
         gravity: the gravity field in the base frame [m/s^2].
         payloads: what the robot exerts on its surroundings.
         sincos: sine and cosine for this kind of scalar.
+        keep: is shown each w, w_dot, v_dot, F, N, f, n once complete, and returns what stands for it from there on.
 
     Returns:
         F, N, f, n of each link in its own frame, and tau of each joint.
@@ -76,18 +78,19 @@ def newton_euler(
         R, p, i = joint.R, joint.p, body.parent
         w_p, w_dot_p, v_dot_p = (w[i], w_dot[i], v_dot[i]) if i >= 0 else (ZERO, ZERO, -gravity)
         carried = R.T @ w_p  # the parent's angular velocity, in the link's frame
-        w.append(carried + joint.w)
-        w_dot.append(R.T @ w_dot_p + carried.cross(joint.w) + joint.w_dot)
-        v_dot.append(
+        w.append(keep(carried + joint.w))
+        w_dot.append(keep(R.T @ w_dot_p + carried.cross(joint.w) + joint.w_dot))
+        v_dot_0 = (
             R.T @ (w_dot_p.cross(p) + w_p.cross(w_p.cross(p)) + v_dot_p)
             + carried.cross(joint.v) * 2
             + joint.w.cross(joint.v)  # of joints that turn and slide at once
             + joint.v_dot
         )
+        v_dot.append(keep(v_dot_0))
         r_C = body.r_C
         v_dot_C = w_dot[-1].cross(r_C) + w[-1].cross(w[-1].cross(r_C)) + v_dot[-1]  # (9)-(15)
-        F.append(v_dot_C * body.M)  # (16)-(22)
-        N.append(body.I @ w_dot[-1] + w[-1].cross(body.I @ w[-1]))  # (23)-(30)
+        F.append(keep(v_dot_C * body.M))  # (16)-(22)
+        N.append(keep(body.I @ w_dot[-1] + w[-1].cross(body.I @ w[-1])))  # (23)-(30)
 
     # Iterations inwards
     f = [ZERO] * len(bodies)  # until link i is reached, f[i] and n[i] gather what it must pass on
@@ -98,8 +101,8 @@ def newton_euler(
     tau: list[list[Scalar]] = [[] for _ in bodies]
     for i in reversed(range(len(bodies))):
         body, joint = bodies[i], joints[i]
-        f[i] = F[i] + f[i]  # (31)-(43)
-        n[i] = N[i] + n[i] + body.r_C.cross(F[i])  # the moments that the paper leaves out before (31)
+        f[i] = keep(F[i] + f[i])  # (31)-(43)
+        n[i] = keep(N[i] + n[i] + body.r_C.cross(F[i]))  # the moments that the paper leaves out before (31)
         tau[i] = DRIVING_FORCE[body.type](body, f[i], n[i])  # Qm_i; Qm_2 is (40)
         if body.parent >= 0:
             R_f = joint.R @ f[i]

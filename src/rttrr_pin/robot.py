@@ -20,6 +20,7 @@ from rttrr_pin.model.sources import AnySource, robots_in
 
 if TYPE_CHECKING:
     from rttrr_pin.inspect import Inspection
+    from rttrr_pin.kernel import Kernel
 
 Array = NDArray[np.float64]
 
@@ -33,6 +34,7 @@ class Robot:
 
     def __init__(self, model: Model) -> None:
         self.model = model
+        self._kernels: dict[object, Kernel] = {}
 
     def __repr__(self) -> str:
         joints = ", ".join(f"{joint.name} ({joint.type})" for joint in self.model.moving)
@@ -88,7 +90,7 @@ class Robot:
             UnknownNameError, MissingJointError: a dict's keys, or the payload's link, do not exist.
         """
         arrays = [coordinates(name, x, self.model.moving) for name, x in (("q", q), ("v", v), ("a", a))]
-        loads = [self.load_of(wrench) for wrench in _as_list(payload)]
+        loads = self._loads(payload)
         batch = batch_shape(arrays, loads)
         rows = int(np.prod(batch, dtype=np.int64))
         q_, v_, a_ = (np.broadcast_to(x, (*batch, x.shape[-1])).reshape(rows, x.shape[-1]) for x in arrays)
@@ -102,6 +104,130 @@ class Robot:
         check_overflow(out, q_, v_, a_)
         shaped = {key: getattr(out, key).reshape(*batch, *getattr(out, key).shape[1:]) for key in RESULTS}
         return LinkWrenches.of(shaped, self.link_names, self.model.v_names)
+
+    def compile(self, outputs: str | Sequence[str] = "tau", emitter: str | None = None) -> Kernel:
+        """Compile the robot's dynamics for this processor.
+
+        Args:
+            outputs: what to compute, one name or several: `"tau"`, `"F"`, `"N"`, `"f"`, `"n"`, `"tau_joint"`,
+                `"mass_matrix"`, `"nonlinear_effects"`, `"gravity_torque"`, `"regressor"`, `"dtau_dq"`, `"dtau_dv"`,
+                `"dtau_da"`. The fewer, the faster.
+            emitter: `"llvm"` (machine code) or `"numpy"` (wherever NumPy runs); None for what is there.
+
+        Returns:
+            A kernel, `kernel(q, v, a, payload=None, out=None, threads=None)`.
+
+        Raises:
+            UnknownNameError: there is no such output, or no such emitter.
+            InputError: no output, or one twice; or the emitter cannot be imported.
+        """
+        from rttrr_pin.kernel import Kernel
+
+        name = (outputs, emitter) if isinstance(outputs, str) else (tuple(outputs), emitter)
+        if name not in self._kernels:
+            self._kernels[name] = Kernel(self.model, outputs, self._loads, emitter)
+        return self._kernels[name]
+
+    def mass_matrix(self, q: Coordinates) -> Array:
+        """The mass matrix M(q), armature included, symmetric to the last bit.
+
+        Args:
+            q: coordinates, (..., nq) [rad or m].
+
+        Returns:
+            (..., nv, nv) [kg m^2, kg m or kg]: tau = M a + nonlinear effects.
+
+        Raises:
+            ShapeError, NumberError, UnknownNameError, MissingJointError: as in `inverse_dynamics`.
+        """
+        return self._computed("mass_matrix", q)
+
+    def nonlinear_effects(self, q: Coordinates, v: Coordinates) -> Array:
+        """The driving forces without acceleration: Coriolis, centrifugal, gravity, and friction of the drives.
+
+        Args:
+            q: coordinates, (..., nq) [rad or m].
+            v: rates, (..., nv) [rad/s or m/s].
+
+        Returns:
+            (..., nv) [N m or N].
+
+        Raises:
+            ShapeError, NumberError, UnknownNameError, MissingJointError: as in `inverse_dynamics`.
+        """
+        return self._computed("nonlinear_effects", q, v)
+
+    def gravity_torque(self, q: Coordinates) -> Array:
+        """The driving forces that hold the robot still.
+
+        Args:
+            q: coordinates, (..., nq) [rad or m].
+
+        Returns:
+            (..., nv) [N m or N].
+
+        Raises:
+            ShapeError, NumberError, UnknownNameError, MissingJointError: as in `inverse_dynamics`.
+        """
+        return self._computed("gravity_torque", q)
+
+    def regressor(self, q: Coordinates, v: Coordinates, a: Coordinates) -> Array:
+        """Y(q, v, a), by which the driving forces are linear in the inertial parameters: tau - tau_joint = Y pi.
+
+        pi is `inertial_parameters()`: of each link m, m c_x, m c_y, m c_z, I_xx, I_xy, I_yy, I_xz, I_yz, I_zz with the
+        tensor about the origin of {i} (Pinocchio's order). Fixed links have columns of their own.
+
+        Args:
+            q: coordinates, (..., nq) [rad or m].
+            v: rates, (..., nv) [rad/s or m/s].
+            a: accelerations, (..., nv) [rad/s^2 or m/s^2].
+
+        Returns:
+            (..., nv, 10 links).
+
+        Raises:
+            ShapeError, NumberError, UnknownNameError, MissingJointError: as in `inverse_dynamics`.
+        """
+        return self._computed("regressor", q, v, a)
+
+    def inertial_parameters(self) -> Array:
+        """The parameters that `regressor` multiplies, (10 links,), ten for each link."""
+        from rttrr_pin.kernel.lump import Inertia
+
+        rows, columns = (0, 0, 1, 0, 1, 2), (0, 1, 1, 2, 2, 2)
+        bodies = [Inertia.of(link) for link in self.model.links]
+        return np.concatenate([np.r_[body.m, body.h, body.J[rows, columns]] for body in bodies] or [np.zeros(0)])
+
+    def derivatives(
+        self, q: Coordinates, v: Coordinates, a: Coordinates, payload: Wrench | Sequence[Wrench] | None = None
+    ) -> tuple[Array, Array, Array]:
+        """The exact derivatives of the driving forces, by dual numbers.
+
+        Coordinates of planar and floating joints move as their rates say (the tangent, as Pinocchio has it); the
+        payload stays as it is in the axes in which it was given; the jump of Coulomb friction at rest is left out.
+
+        Args:
+            q: coordinates, (..., nq) [rad or m].
+            v: rates, (..., nv) [rad/s or m/s].
+            a: accelerations, (..., nv) [rad/s^2 or m/s^2].
+            payload: what the robot exerts on its surroundings.
+
+        Returns:
+            d tau / dq, d tau / dv, d tau / da, each (..., nv, nv), row i of tau_i.
+
+        Raises:
+            ShapeError, NumberError, UnknownNameError, MissingJointError: as in `inverse_dynamics`.
+        """
+        names = ("dtau_dq", "dtau_dv", "dtau_da")
+        parts = self.compile(names)(q, v, a, payload=payload)
+        return parts["dtau_dq"], parts["dtau_dv"], parts["dtau_da"]
+
+    def _computed(self, name: str, q: Coordinates, v: Coordinates | None = None, a: Coordinates | None = None) -> Array:
+        result: Array = self.compile(name)(q, v, a)
+        return result
+
+    def _loads(self, payload: Wrench | Sequence[Wrench] | None) -> list[Load]:
+        return [self.load_of(wrench) for wrench in _as_list(payload)]
 
     def load_of(self, wrench: Wrench) -> Load:
         """A user's wrench at the index of its link.

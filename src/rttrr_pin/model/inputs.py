@@ -55,7 +55,7 @@ def coordinates(name: str, values: Coordinates, joints: Sequence[Joint]) -> Arra
             )
     finite(name, array, labels)
     if name == "q":
-        _check_quaternions(array, joints)
+        check_quaternions(array, joints)
     return array
 
 
@@ -153,8 +153,12 @@ def _each(joints: Sequence[Joint]) -> str:
     return "joint" if all(joint.nq == 1 for joint in joints) else "coordinate"
 
 
-def _check_quaternions(q: Array, joints: Sequence[Joint]) -> None:
-    """The last four coordinates of a floating joint are a rotation only if they have length 1."""
+def check_quaternions(q: Array, joints: Sequence[Joint]) -> None:
+    """The last four coordinates of a floating joint are a rotation only if they have length 1.
+
+    Raises:
+        NumberError: they have not.
+    """
     at = 0
     for joint in joints:
         at += joint.nq

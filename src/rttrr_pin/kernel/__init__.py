@@ -1,0 +1,10 @@
+"""One robot, one compiled program.
+
+The specification runs once on scalars that record (`trace`), what they recorded is made shorter (`simplify`), and an
+emitter turns it into machine code (`emit`), which is kept on disk (`cache`).
+"""
+
+from rttrr_pin.kernel.kernel import Kernel
+from rttrr_pin.kernel.quantities import QUANTITIES
+
+__all__ = ["QUANTITIES", "Kernel"]

@@ -1,0 +1,237 @@
+"""The tracer: a scalar whose operations are recorded, and shared, as an expression graph.
+
+Run on these scalars, the specification leaves behind the straight-line program of one robot. Every operation goes
+through one constructor, which folds what the robot's numbers decide (a product with 0 or 1, a sum of constants, a
+sign) and returns the node that is there already if the same operation was recorded before (hash-consing), so that
+common subexpressions are found as they arise. What no output needs is never emitted.
+
+Nodes are in canonical form: a constant factor stands first and is positive, signs are pulled out of products and
+sums as far as they go, and the two sides of + and - stand in the order of their numbers.
+"""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import TypeAlias
+
+Number: TypeAlias = int | float
+
+
+class Op(enum.IntEnum):
+    """What a node does."""
+
+    CONSTANT = 0
+    INPUT = 1
+    ADD = 2
+    SUB = 3
+    MUL = 4
+    NEG = 5
+    SIN = 6
+    COS = 7
+    SIGN = 8
+
+
+LEAVES = (Op.CONSTANT, Op.INPUT)
+
+
+@dataclass(eq=False)
+class Graph:
+    """Nodes by number; what a node needs stands before it.
+
+    Attributes:
+        op: what each node does.
+        args: numbers of the nodes that it takes; of an input its place among the inputs.
+        value: of a constant.
+        kept: nodes that are a finished component of w, w_dot, v_dot, F, N, f or n.
+    """
+
+    op: list[Op] = field(default_factory=list)
+    args: list[tuple[int, ...]] = field(default_factory=list)
+    value: dict[int, float] = field(default_factory=dict)
+    kept: set[int] = field(default_factory=set)
+    _known: dict[tuple[object, ...], int] = field(default_factory=dict)
+
+    def __len__(self) -> int:
+        return len(self.op)
+
+    def _node(self, op: Op, args: tuple[int, ...]) -> int:
+        """The node of that operation, new or known."""
+        key = (op, args)
+        number = self._known.get(key)
+        if number is None:
+            number = self._known[key] = len(self.op)
+            self.op.append(op)
+            self.args.append(args)
+        return number
+
+    def constant(self, value: Number) -> int:
+        """A number of the robot; +0 and -0 are one, since no sum or product of the recursion tells them apart."""
+        value = float(value) + 0.0
+        key = (Op.CONSTANT, value)
+        number = self._known.get(key)
+        if number is None:
+            number = self._known[key] = len(self.op)
+            self.op.append(Op.CONSTANT)
+            self.args.append(())
+            self.value[number] = value
+        return number
+
+    def input(self, place: int) -> int:
+        """The input at a place."""
+        return self._node(Op.INPUT, (place,))
+
+    def is_constant(self, x: int, value: float | None = None) -> bool:
+        """Whether a node is a constant, or that constant."""
+        return self.op[x] is Op.CONSTANT and (value is None or self.value[x] == value)
+
+    def neg(self, x: int) -> int:
+        """The opposite -x."""
+        if self.op[x] is Op.CONSTANT:
+            return self.constant(-self.value[x])
+        return self.args[x][0] if self.op[x] is Op.NEG else self._node(Op.NEG, (x,))
+
+    def add(self, x: int, y: int) -> int:
+        """The sum x + y."""
+        if self.op[x] is Op.CONSTANT and self.op[y] is Op.CONSTANT:
+            return self.constant(self.value[x] + self.value[y])
+        if self.is_constant(x, 0.0):
+            return y
+        if self.is_constant(y, 0.0):
+            return x
+        if self.op[y] is Op.NEG:
+            return self.sub(x, self.args[y][0])
+        if self.op[x] is Op.NEG:
+            return self.sub(y, self.args[x][0])
+        if x == y:
+            return self.mul(self.constant(2.0), x)
+        return self._node(Op.ADD, (min(x, y), max(x, y)))
+
+    def sub(self, x: int, y: int) -> int:
+        """The difference x - y."""
+        if x == y:
+            return self.constant(0.0)
+        if self.op[x] is Op.CONSTANT and self.op[y] is Op.CONSTANT:
+            return self.constant(self.value[x] - self.value[y])
+        if self.is_constant(x, 0.0):
+            return self.neg(y)
+        if self.is_constant(y, 0.0):
+            return x
+        if self.op[y] is Op.NEG:
+            return self.add(x, self.args[y][0])
+        if self.op[x] is Op.NEG:
+            return self.neg(self.add(self.args[x][0], y))
+        return self._node(Op.SUB, (x, y)) if x < y else self.neg(self._node(Op.SUB, (y, x)))
+
+    def mul(self, x: int, y: int) -> int:
+        """The product x y."""
+        if self.op[x] is not Op.CONSTANT:
+            x, y = y, x
+        if self.op[x] is Op.CONSTANT:
+            return self._scaled(self.value[x], y)
+        if self.op[x] is Op.NEG:
+            return self.neg(self.mul(self.args[x][0], y))
+        if self.op[y] is Op.NEG:
+            return self.neg(self.mul(x, self.args[y][0]))
+        return self._node(Op.MUL, (min(x, y), max(x, y)))
+
+    def _scaled(self, factor: float, y: int) -> int:
+        """A constant times y."""
+        if self.op[y] is Op.CONSTANT:
+            return self.constant(factor * self.value[y])
+        if factor == 0.0:
+            return self.constant(0.0)
+        if factor < 0.0:
+            return self.neg(self._scaled(-factor, y))
+        if self.op[y] is Op.NEG:
+            return self.neg(self._scaled(factor, self.args[y][0]))
+        if factor == 1.0:
+            return y
+        if self.op[y] is Op.MUL and self.op[self.args[y][0]] is Op.CONSTANT:
+            return self._scaled(factor * self.value[self.args[y][0]], self.args[y][1])
+        return self._node(Op.MUL, (self.constant(factor), y))
+
+    def function(self, op: Op, x: int) -> int:
+        """Sine, cosine or sign; odd and even ones lose the sign of their argument."""
+        if self.op[x] is Op.NEG:
+            inner = self.function(op, self.args[x][0])
+            return inner if op is Op.COS else self.neg(inner)
+        return self._node(op, (x,))
+
+    def apply(self, op: Op, args: Sequence[int]) -> int:
+        """An operation on nodes of this graph, by its constructor."""
+        return BUILD[op](self, *args)
+
+    def reachable(self, outputs: Iterable[int]) -> list[int]:
+        """The nodes that the outputs need, in the order of their numbers."""
+        seen = set()
+        waiting = list(outputs)
+        while waiting:
+            x = waiting.pop()
+            if x not in seen:
+                seen.add(x)
+                if self.op[x] is not Op.INPUT:
+                    waiting.extend(self.args[x])
+        return sorted(seen)
+
+
+BUILD: dict[Op, Callable[..., int]] = {
+    Op.ADD: Graph.add,
+    Op.SUB: Graph.sub,
+    Op.MUL: Graph.mul,
+    Op.NEG: Graph.neg,
+    Op.SIN: lambda graph, x: graph.function(Op.SIN, x),
+    Op.COS: lambda graph, x: graph.function(Op.COS, x),
+    Op.SIGN: lambda graph, x: graph.function(Op.SIGN, x),
+}
+"""The constructor of each operation."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Node:
+    """A scalar that records what is done with it; plain numbers join in as constants.
+
+    Attributes:
+        graph: where it is recorded.
+        number: of its node there.
+    """
+
+    graph: Graph
+    number: int
+
+    def _join(self, other: Node | Number) -> int:
+        return other.number if isinstance(other, Node) else self.graph.constant(other)
+
+    def __add__(self, other: Node | Number) -> Node:
+        if not isinstance(other, SCALARS):
+            return NotImplemented  # a dual number knows what to do
+        return Node(self.graph, self.graph.add(self.number, self._join(other)))
+
+    __radd__ = __add__
+
+    def __sub__(self, other: Node | Number) -> Node:
+        if not isinstance(other, SCALARS):
+            return NotImplemented
+        return Node(self.graph, self.graph.sub(self.number, self._join(other)))
+
+    def __rsub__(self, other: Number) -> Node:
+        return Node(self.graph, self.graph.sub(self._join(other), self.number))
+
+    def __mul__(self, other: Node | Number) -> Node:
+        if not isinstance(other, SCALARS):
+            return NotImplemented
+        return Node(self.graph, self.graph.mul(self.number, self._join(other)))
+
+    __rmul__ = __mul__
+
+    def __neg__(self) -> Node:
+        return Node(self.graph, self.graph.neg(self.number))
+
+    def function(self, op: Op) -> Node:
+        """Sine, cosine or sign of it."""
+        return Node(self.graph, self.graph.function(op, self.number))
+
+
+SCALARS = (Node, int, float)
+"""What a node can be added to or multiplied with by itself."""

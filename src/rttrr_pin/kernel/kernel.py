@@ -1,0 +1,314 @@
+"""The kernel as a user holds it: one robot, compiled for what is asked of it."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.arithmetic import Load
+from rttrr_pin.errors import InputError, NumberError, ShapeError, UnknownNameError
+from rttrr_pin.kernel import cache, threads
+from rttrr_pin.kernel.emit import Emitter, Executable, emitter
+from rttrr_pin.kernel.program import Field, Program
+from rttrr_pin.kernel.quantities import QUANTITIES
+from rttrr_pin.kernel.simplify import simplify
+from rttrr_pin.kernel.trace import PayloadSlot, fields, trace
+from rttrr_pin.model import Joint, Model
+from rttrr_pin.model.inputs import Coordinates, check_quaternions, coordinates, finite
+
+Array = NDArray[np.float64]
+
+LoadOf = Callable[[Any], list[Load]]
+"""What a user passes as payload, as loads of links."""
+
+
+@dataclass(frozen=True)
+class Variant:
+    """The program for payloads at given links, loaded.
+
+    Attributes:
+        inputs: the arrays it reads.
+        outputs: the arrays it writes.
+        executable: what runs it.
+    """
+
+    inputs: tuple[Field, ...]
+    outputs: tuple[Field, ...]
+    executable: Executable
+
+
+class Kernel:
+    """A robot's dynamics, compiled.
+
+    Made by `Robot.compile`. The first call compiles, or reads what another process has compiled before.
+
+    Attributes:
+        model: the robot.
+        outputs: what it computes.
+    """
+
+    def __init__(
+        self, model: Model, outputs: str | Sequence[str], loads_of: LoadOf, emitter_name: str | None = None
+    ) -> None:
+        self.model = model
+        self._single = isinstance(outputs, str)
+        self.outputs: tuple[str, ...] = (outputs,) if isinstance(outputs, str) else tuple(outputs)
+        for name in self.outputs:
+            if name not in QUANTITIES:
+                raise UnknownNameError("output", name, tuple(QUANTITIES))
+        if not self.outputs or len(set(self.outputs)) < len(self.outputs):
+            raise InputError(f"outputs is {outputs!r}: name at least one, and each once, of {', '.join(QUANTITIES)}")
+        self._loads_of = loads_of
+        self._emitter: Emitter = emitter(emitter_name)
+        self._variants: dict[tuple[PayloadSlot, ...], Variant] = {}
+        self._lock = threading.Lock()
+        self._inputs = "".join(field.name for field in fields(model, self.outputs))
+        self._floats = any(joint.nq != joint.nv for joint in model.moving)
+        self._one: Callable[..., bool | None] | None = None
+
+    def __repr__(self) -> str:
+        return f"<Kernel of {self.model.name!r}: {', '.join(self.outputs)} by {self._emitter.name}>"
+
+    @cached_property
+    def program(self) -> Program:
+        """The straight-line program (without payload), with the count of its operations."""
+        return simplify(trace(self.model, self.outputs))
+
+    def __call__(
+        self,
+        q: Coordinates,
+        v: Coordinates | None = None,
+        a: Coordinates | None = None,
+        payload: Any = None,
+        out: Any = None,
+        threads: int | None = None,
+    ) -> Any:
+        """Compute a batch of states.
+
+        Every state goes through the same instructions, so its bits depend neither on its neighbours nor on the layout
+        of the arrays nor on the threads. Memory beyond inputs and outputs does not grow with the batch.
+
+        Args:
+            q: coordinates, (..., nq) [rad or m], as in `Robot.inverse_dynamics`; float32 is widened, any strides are
+                taken as they are (the transpose of a C-ordered (n, N) as well), and leading axes broadcast.
+            v: rates, (..., nv); left out where the outputs do not depend on them.
+            a: accelerations, (..., nv); left out likewise.
+            payload: what the robot exerts on its surroundings, a `Wrench` or several; with outputs that it enters.
+            out: where to write: a float64 array for a single output, a dict of them by name for several.
+            threads: how many; None for as many as pay.
+
+        Returns:
+            An array (..., *shape) for outputs="name"; a dict of arrays by name for a sequence of names.
+
+        Raises:
+            ShapeError: an array has not one value for each coordinate, leading axes do not broadcast, or `out` has
+                another shape.
+            NumberError: a value is NaN, inf, complex, ..., or so large that the result overflows.
+            InputError: an argument is missing, or too many, or `out` is no float64 array that can be written.
+        """
+        if self._one is not None and payload is None and out is not None and self._shortcut(q, v, a, out):
+            return out
+        variant_loads = self._loads(payload)
+        arrays = self._arrays(q, v, a)
+        loads = {f"payload_{k}_{name}": getattr(load, name) for k, load in enumerate(variant_loads) for name in "fn"}
+        batch = _batch_shape(arrays | loads)
+        rows = int(np.prod(batch, dtype=np.int64))
+        inputs = [_rows(x, batch, rows) for x in (*arrays.values(), *loads.values())]
+        variant = self._variant(tuple(PayloadSlot(load.link, load.in_base) for load in variant_loads))
+        targets, results = self._targets(variant, out, batch, rows, inputs)
+        if rows and self._run(variant, inputs, targets, rows, threads):
+            self._explain(arrays, loads, variant, targets)
+        return self._returned(results, targets, out)
+
+    def _shortcut(self, q: Any, v: Any, a: Any, out: Any) -> bool | None:
+        """One state in float64 arrays, without a look at them in Python."""
+        assert self._one is not None
+        if self._single and a is not None:
+            return self._one(q, v, a, out)
+        given = [x for x in (q, v, a) if x is not None]
+        if self._single:
+            return self._one(*given, out)
+        if isinstance(out, dict) and len(out) == len(self.outputs):
+            return self._one(*given, *(out.get(name) for name in self.outputs))
+        return None
+
+    def _loads(self, payload: Any) -> list[Load]:
+        if payload is None:
+            return []
+        deaf = [name for name in self.outputs if not QUANTITIES[name].payload]
+        if deaf:
+            raise InputError(f"a payload was passed, but {deaf[0]} does not depend on it: leave it out")
+        return self._loads_of(payload)
+
+    def _arrays(self, q: Any, v: Any, a: Any) -> dict[str, NDArray[Any]]:
+        """The arguments that the outputs depend on, checked but for NaN and infinity, which the results betray."""
+        arrays = {}
+        for name, x in (("q", q), ("v", v), ("a", a)):
+            if (x is not None) != (name in self._inputs):
+                what = "is missing" if x is None else "was passed"
+                raise InputError(
+                    f"{name} {what}: {', '.join(self.outputs)} depend on {', '.join(self._inputs)}; pass these"
+                )
+            if x is not None:
+                arrays[name] = _as_is(x, self._width(name)) or [coordinates(name, x, self.model.moving)]
+        if self._floats and "q" in arrays:
+            check_quaternions(np.asarray(arrays["q"][0], dtype=np.float64), self.model.moving)
+        return {name: array for name, (array,) in arrays.items()}
+
+    def _width(self, name: str) -> int:
+        return self.model.nq if name == "q" else self.model.nv
+
+    def _variant(self, slots: tuple[PayloadSlot, ...]) -> Variant:
+        """The program for payloads there: from this process, from disk, or compiled now."""
+        found = self._variants.get(slots)
+        if found is None:
+            with self._lock:
+                found = self._variants.get(slots)
+                if found is None:
+                    found = self._variants[slots] = self._compiled(slots)
+                    if not slots and not self._floats:  # quaternions are looked at in Python
+                        self._one = found.executable.one
+        return found
+
+    def _compiled(self, slots: tuple[PayloadSlot, ...]) -> Variant:
+        name = cache.key(self._emitter.identity, fingerprint(self.model), repr(self.outputs), repr(slots))
+        code = cache.read(name)
+        if code is None:
+            program = simplify(trace(self.model, self.outputs, slots))
+            code = self._emitter.emit(program)
+            cache.write(name, code)
+        inputs = fields(self.model, self.outputs, slots)
+        outputs = tuple(Field(name, QUANTITIES[name].shape(self.model)) for name in self.outputs)
+        return Variant(inputs, outputs, self._emitter.load(code, inputs, outputs))
+
+    def _targets(
+        self, variant: Variant, out: Any, batch: tuple[int, ...], rows: int, inputs: Sequence[NDArray[Any]]
+    ) -> tuple[list[Array], list[Array]]:
+        """For each output the rows to write, and the array to return."""
+        given = self._given(out)
+        targets, results = [], []
+        for field in variant.outputs:
+            shape = (*batch, *field.shape)
+            mine = given.get(field.name)
+            if mine is not None:
+                _check_out(field.name, mine, shape)
+            elsewhere = mine is not None and any(np.may_share_memory(mine, x) for x in inputs)
+            target = None if mine is None or elsewhere else _view(mine, rows, field.width)
+            if target is None:
+                target = np.empty((rows, field.width))
+            targets.append(target)
+            results.append(target.reshape(shape) if mine is None else mine)
+        return targets, results
+
+    def _given(self, out: Any) -> Mapping[str, Any]:
+        if out is None:
+            return {}
+        if self._single:
+            return {self.outputs[0]: out}
+        if not isinstance(out, Mapping) or set(out) != set(self.outputs):
+            raise InputError(f"out must be a dict with an array for each of {', '.join(self.outputs)}")
+        return out
+
+    def _run(
+        self, variant: Variant, inputs: Sequence[Any], targets: Sequence[Array], rows: int, wanted: int | None
+    ) -> bool:
+        task = variant.executable.bind(inputs, targets)
+        numbers = rows * sum(field.width for field in variant.inputs + variant.outputs)
+        return threads.run(task, rows, threads.count(wanted, numbers))
+
+    def _returned(self, results: Sequence[Array], targets: Sequence[Array], out: Any) -> Any:
+        for result, target in zip(results, targets, strict=True):
+            if not np.may_share_memory(result, target):
+                result[...] = target.reshape(result.shape)
+        if out is not None:
+            return out
+        return results[0] if self._single else dict(zip(self.outputs, results, strict=True))
+
+    def _explain(
+        self, arrays: Mapping[str, Any], loads: Mapping[str, Any], variant: Variant, targets: Sequence[Array]
+    ) -> None:
+        """Name the number that is not finite, or the state that overflows."""
+        for name, x in arrays.items():
+            finite(name, x, _labels(name, self.model.moving))
+        for name, x in loads.items():
+            finite(name, x)
+        for field, target in zip(variant.outputs, targets, strict=True):
+            bad = np.argwhere(~np.isfinite(target))
+            if len(bad):
+                raise NumberError(
+                    f"{field.name} overflows in state {int(bad[0][0])}: "
+                    "pass coordinates of a size that a robot can have, in rad, m and s",
+                    name=field.name,
+                    index=(int(bad[0][0]),),
+                )
+
+
+def fingerprint(model: Model) -> bytes:
+    """Every number of a robot that a program can depend on."""
+    parts: list[object] = [model.gravity.tobytes()]
+    for link, joint in zip(model.links, model.joints, strict=True):
+        drive, mimic = joint.drive, joint.mimic
+        parts += [link.mass, link.com.tobytes(), link.inertia.tobytes(), joint.type.value, joint.parent]
+        parts += [joint.R.tobytes(), joint.p.tobytes(), joint.axis.tobytes()]
+        parts += [drive.armature, drive.damping, drive.friction]
+        parts += [mimic and (mimic.joint, mimic.multiplier, mimic.offset)]
+    return repr(parts).encode()
+
+
+def _labels(name: str, joints: Sequence[Joint]) -> list[str]:
+    return [label for joint in joints for label in (joint.q_labels() if name == "q" else joint.v_labels())]
+
+
+def _as_is(x: Any, width: int) -> list[NDArray[Any]] | None:
+    """An array that compiled code can read where it lies."""
+    if type(x) is not np.ndarray or x.dtype not in (np.float64, np.float32) or not x.flags.aligned:
+        return None
+    return [x] if x.dtype.isnative and x.ndim and x.shape[-1] == width else None
+
+
+def _batch_shape(arrays: Mapping[str, NDArray[Any]]) -> tuple[int, ...]:
+    try:
+        return np.broadcast_shapes(*(x.shape[:-1] for x in arrays.values()))
+    except ValueError:
+        shapes = ", ".join(f"{name}: {x.shape[:-1]}" for name, x in arrays.items())
+        raise ShapeError(
+            f"the leading axes do not broadcast ({shapes}): give all the same batch shape",
+            name="q, v, a",
+            got=(),
+            wanted="leading axes that broadcast",
+        ) from None
+
+
+def _rows(x: NDArray[Any], batch: tuple[int, ...], rows: int) -> NDArray[Any]:
+    """(N, width), without copying where strides can say it."""
+    if x.shape[:-1] != batch:
+        x = np.broadcast_to(x, (*batch, x.shape[-1]))
+    return x if x.ndim == 2 else x.reshape(rows, x.shape[-1])
+
+
+def _view(x: Array, rows: int, width: int) -> Array | None:
+    """(N, width) of the same memory, if there is such a view."""
+    if x.ndim == 2 and x.shape == (rows, width):
+        return x
+    return x.reshape(rows, width) if x.flags.c_contiguous else None
+
+
+def _check_out(name: str, x: Any, shape: tuple[int, ...]) -> None:
+    if not isinstance(x, np.ndarray) or x.dtype != np.float64 or not x.flags.aligned or not x.dtype.isnative:
+        kind = f"array of {x.dtype}" if isinstance(x, np.ndarray) else type(x).__name__
+        raise InputError(f"out for {name} is a {kind}: expected a float64 array, such as np.empty({shape})")
+    if x.shape != shape:
+        raise ShapeError(
+            f"out for {name} has shape {x.shape}, expected {shape}: pass np.empty({shape})",
+            name="out",
+            got=x.shape,
+            wanted=str(shape),
+        )
+    if not x.flags.writeable:
+        raise InputError(f"out for {name} cannot be written: pass an array of your own, such as np.empty({shape})")

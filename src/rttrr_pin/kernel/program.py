@@ -1,0 +1,135 @@
+"""The straight-line program of one robot: inputs, operations in order, outputs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.kernel.expression import Graph, Op
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """An array that goes in or comes out: so many numbers for each state.
+
+    Attributes:
+        name: such as "q" or "tau".
+        shape: of what belongs to one state, such as (6, 3).
+    """
+
+    name: str
+    shape: tuple[int, ...]
+
+    @property
+    def width(self) -> int:
+        """The count of numbers for each state."""
+        return math.prod(self.shape)
+
+
+@dataclass(frozen=True, slots=True)
+class Operations:
+    """What one state costs.
+
+    Attributes:
+        multiplications, additions, negations: counted one by one (a fused multiply-add counts as two).
+        sincos: angles of which sine or cosine are needed.
+    """
+
+    multiplications: int
+    additions: int
+    negations: int
+    sincos: int
+
+    @property
+    def total(self) -> int:
+        """All but the sines and cosines; published counts are of this kind."""
+        return self.multiplications + self.additions + self.negations
+
+    def __str__(self) -> str:
+        return (
+            f"{self.multiplications} multiplications, {self.additions} additions, {self.negations} sign changes, "
+            f"{self.sincos} angles"
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Program:
+    """A robot's program.
+
+    Attributes:
+        graph: the operations.
+        inputs: the arrays it reads; the graph's inputs are their numbers, one array after the other.
+        outputs: the arrays it writes.
+        results: for each number of the outputs, one array after the other, the node that computes it.
+    """
+
+    graph: Graph
+    inputs: tuple[Field, ...]
+    outputs: tuple[Field, ...]
+    results: tuple[int, ...]
+
+    @cached_property
+    def order(self) -> tuple[int, ...]:
+        """The nodes that are needed, each behind what it takes."""
+        return tuple(self.graph.reachable(self.results))
+
+    @property
+    def width_in(self) -> int:
+        """The count of numbers that one state brings."""
+        return sum(field.width for field in self.inputs)
+
+    @cached_property
+    def operations(self) -> Operations:
+        """What one state costs."""
+        op, args = self.graph.op, self.graph.args
+        ops = [op[x] for x in self.order]
+        angles = {args[x][0] for x in self.order if op[x] in (Op.SIN, Op.COS)}
+        return Operations(ops.count(Op.MUL), ops.count(Op.ADD) + ops.count(Op.SUB), ops.count(Op.NEG), len(angles))
+
+    def rebuilt(self, step: Callable[[Graph, Op, tuple[int, ...]], int]) -> Program:
+        """The same program in a new graph, each operation made anew by a step (new graph, op, new args)."""
+        graph = Graph()
+        new: dict[int, int] = {}
+        for x in self.order:
+            op, args = self.graph.op[x], self.graph.args[x]
+            if op is Op.CONSTANT:
+                new[x] = graph.constant(self.graph.value[x])
+            elif op is Op.INPUT:
+                new[x] = graph.input(args[0])
+            else:
+                new[x] = step(graph, op, tuple(new[y] for y in args))
+            if x in self.graph.kept:
+                graph.kept.add(new[x])
+        return replace(self, graph=graph, results=tuple(new[x] for x in self.results))
+
+    def evaluate(self, columns: Sequence[Array]) -> list[Array | float]:
+        """The outputs for columns of inputs, by NumPy: slow, and the reference for what compiles the program."""
+        values: dict[int, Array | float] = {}
+        for x in self.order:
+            op, args = self.graph.op[x], self.graph.args[x]
+            if op is Op.CONSTANT:
+                values[x] = self.graph.value[x]
+            elif op is Op.INPUT:
+                values[x] = columns[args[0]]
+            else:
+                values[x] = NUMERIC[op](*(values[y] for y in args))
+        return [values[x] for x in self.results]
+
+
+NUMERIC: dict[Op, Callable[..., Array]] = {
+    Op.ADD: np.add,
+    Op.SUB: np.subtract,
+    Op.MUL: np.multiply,
+    Op.NEG: np.negative,
+    Op.SIN: np.sin,
+    Op.COS: np.cos,
+    Op.SIGN: np.sign,
+}
+"""Each operation on numbers."""

@@ -1,0 +1,106 @@
+"""From a robot to its program: the specification, run on scalars that record."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from rttrr_pin.algebra import Scalar, Vector
+from rttrr_pin.arithmetic import Arithmetic
+from rttrr_pin.kernel.expression import Graph, Node, Op
+from rttrr_pin.kernel.lump import lump
+from rttrr_pin.kernel.program import Field, Program
+from rttrr_pin.kernel.quantities import QUANTITIES, Motion
+from rttrr_pin.model import Model
+from rttrr_pin.newton_euler import Payload
+
+
+@dataclass(frozen=True, slots=True)
+class PayloadSlot:
+    """Where a payload acts, and in whose axes; its numbers come with each state.
+
+    Attributes:
+        link: index of the link.
+        in_base: whether in base axes; else in the link's.
+    """
+
+    link: int
+    in_base: bool = False
+
+
+def trace(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot] = (), lumped: bool = True) -> Program:
+    """The program of a robot.
+
+    Args:
+        model: the robot.
+        outputs: names from `QUANTITIES`.
+        payloads: where payloads act.
+        lumped: whether inertia may be moved between links where that leaves the outputs as they are.
+
+    Returns:
+        The program as the specification's operations leave it; `simplify` shortens it.
+    """
+    wanted = [QUANTITIES[name] for name in outputs]
+    if lumped and not any(quantity.of_links for quantity in wanted):
+        model = lump(model)
+    inputs = fields(model, outputs, payloads)
+    graph = Graph()
+    columns = (Node(graph, graph.input(place)) for place in range(sum(field.width for field in inputs)))
+    given = {field.name: [next(columns) for _ in range(field.width)] for field in inputs}
+    motion = Motion(
+        model,
+        _tracing(graph),
+        given.get("q", []),
+        given.get("v", []),
+        given.get("a", []),
+        payloads=[
+            Payload(slot.link, Vector(*given[f"payload_{k}_f"]), Vector(*given[f"payload_{k}_n"]), slot.in_base)
+            for k, slot in enumerate(payloads)
+        ],
+    )
+    scalars = [scalar for quantity in wanted for scalar in quantity.scalars(motion)]
+    return Program(
+        graph,
+        inputs,
+        tuple(Field(name, quantity.shape(model)) for name, quantity in zip(outputs, wanted, strict=True)),
+        tuple(_number(graph, scalar) for scalar in scalars),
+    )
+
+
+def fields(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot] = ()) -> tuple[Field, ...]:
+    """The arrays that a program reads: what its outputs depend on, then force and moment of each payload."""
+    sizes = {"q": model.nq, "v": model.nv, "a": model.nv}
+    needed = [name for name in sizes if any(name in QUANTITIES[output].inputs for output in outputs)]
+    slots = [Field(f"payload_{k}_{name}", (3,)) for k in range(len(payloads)) for name in "fn"]
+    return (*(Field(name, (sizes[name],)) for name in needed), *slots)
+
+
+def _number(graph: Graph, scalar: Scalar) -> int:
+    """The node of a scalar that may have stayed a plain number."""
+    return scalar.number if isinstance(scalar, Node) else graph.constant(scalar)
+
+
+def _tracing(graph: Graph) -> Arithmetic:
+    """The arithmetic that records in a graph; numbers of the model stay floats and fold among themselves."""
+
+    def keep(vector: Vector) -> Vector:
+        graph.kept.update(_nodes(vector))
+        return vector
+
+    return Arithmetic(number=lambda value, error: value, column=lambda x: x, sincos=_sincos, sign=_sign, keep=keep)
+
+
+def _nodes(vector: Vector) -> Iterator[int]:
+    return (scalar.number for scalar in vector if isinstance(scalar, Node))
+
+
+def _sincos(q: Scalar) -> tuple[Scalar, Scalar]:
+    """Also of a plain number: what follows another joint with multiplier 0 stands still."""
+    if isinstance(q, Node):
+        return q.function(Op.SIN), q.function(Op.COS)
+    return math.sin(q), math.cos(q)
+
+
+def _sign(x: Scalar) -> Scalar:
+    return x.function(Op.SIGN) if isinstance(x, Node) else float((x > 0) - (x < 0))
