@@ -14,6 +14,8 @@ import rttrr_pin
 from rttrr_pin import Robot, RttrrError, Wrench
 from rttrr_pin.batch import BLOCK
 from rttrr_pin.errors import InputError, MissingJointError, NumberError, ShapeError, UnknownNameError
+from rttrr_pin.robot import KERNEL_FROM
+from tolerances import ROUNDING, norm_error
 
 ZERO = np.zeros(5)
 JOINTS = tuple(f"joint_{i}" for i in range(1, 6))
@@ -32,9 +34,9 @@ def test_outputs_follow_the_batch_axes(rttrr: Robot, batch: tuple[int, ...]) -> 
         assert getattr(result, key).shape == (*batch, 6, 3)
 
 
-@pytest.mark.parametrize("rows", [1, 2, 7, BLOCK - 1, BLOCK, BLOCK + 1, 2 * BLOCK + 5])
+@pytest.mark.parametrize("rows", [1, 2, 7, BLOCK - 1, BLOCK, BLOCK + 1, KERNEL_FROM - 1])
 def test_a_state_gives_the_same_bits_in_any_batch(rttrr: Robot, rows: int) -> None:
-    """Alone, in a block of any length, first or last."""
+    """Alone, in a block of any length, first or last; up to the size from which the kernel computes."""
     q, v, a = some((rows,), seed=rows)
     payload = Wrench((1.0, 2.0, 3.0), (0.1, 0.2, 0.3), expressed_in="base")
     together = rttrr.inverse_dynamics(q, v, a, payload)
@@ -42,6 +44,19 @@ def test_a_state_gives_the_same_bits_in_any_batch(rttrr: Robot, rows: int) -> No
         alone = rttrr.inverse_dynamics(q[k], v[k], a[k], payload)
         for key, x in alone.items():
             np.testing.assert_array_equal(x, getattr(together, key)[k])
+
+
+@pytest.mark.parametrize("rows", [KERNEL_FROM, KERNEL_FROM + 1, 2 * KERNEL_FROM + 5])
+def test_large_batches_are_the_kernels(rttrr: Robot, rows: int) -> None:
+    """The same within rounding as the readable recursion, and the same bits in any large batch."""
+    q, v, a = some((rows,), seed=rows)
+    payload = Wrench((1.0, 2.0, 3.0), (0.1, 0.2, 0.3), expressed_in="base")
+    large = rttrr.inverse_dynamics(q, v, a, payload)
+    again = rttrr.inverse_dynamics(*(np.concatenate((x[3:], x)) for x in (q, v, a)), payload)[rows - 3 :]
+    small = rttrr.inverse_dynamics(q[:99], v[:99], a[:99], payload)
+    for key, x in large.items():
+        np.testing.assert_array_equal(x, getattr(again, key))
+        assert norm_error(x[:99], getattr(small, key)) <= ROUNDING
 
 
 def test_leading_axes_broadcast(rttrr: Robot) -> None:

@@ -68,7 +68,7 @@ def test_bundled_robots_are_found_in_a_checkout_and_in_a_wheel(
     assert set(in_checkout) == {path.stem for path in (repository / "urdf").glob("*.urdf")}
     (tmp_path / "urdf").mkdir()
     (tmp_path / "urdf" / "mine.urdf").write_text(CHAIN)
-    monkeypatch.setattr(sources.resources, "files", lambda package: tmp_path)
+    monkeypatch.setattr(sources, "__file__", str(tmp_path / "model" / "sources.py"))
     monkeypatch.setattr(sources, "bundled", sources.bundled.__wrapped__)
     assert set(sources.bundled()) == {"mine"}
     assert rttrr_pin.load("mine").name == "chain_1"
@@ -206,7 +206,7 @@ def example_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         (tmp_path / place).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / place).write_text(random_chain(seed, ("revolute",)))
     monkeypatch.setattr(FakeFile, "top", tmp_path)
-    monkeypatch.setattr(sources.metadata, "files", lambda name: [FakeFile(place) for place in places])
+    monkeypatch.setattr(metadata, "files", lambda name: [FakeFile(place) for place in places])
     monkeypatch.setattr(sources, "examples", sources.examples.__wrapped__)
     return tmp_path
 
@@ -232,7 +232,7 @@ def test_without_the_package_the_extra_is_named(monkeypatch: pytest.MonkeyPatch)
     def missing(name: str) -> Any:
         raise metadata.PackageNotFoundError(name)
 
-    monkeypatch.setattr(sources.metadata, "files", missing)
+    monkeypatch.setattr(metadata, "files", missing)
     monkeypatch.setattr(sources, "examples", sources.examples.__wrapped__)
     with pytest.raises(InputError, match=r"pip install 'rttrr-pin\[robots\]'"):
         rttrr_pin.load("example:panda")

@@ -25,6 +25,10 @@ if TYPE_CHECKING:
 Array = NDArray[np.float64]
 
 
+KERNEL_FROM = 8192
+"""States in a batch from which compiling, or reading what was compiled before, costs less than it saves."""
+
+
 class Robot:
     """A robot and its inverse dynamics.
 
@@ -73,6 +77,10 @@ class Robot:
         A joint that follows another (<mimic>) has no coordinate of its own; what drives it is part of the other's tau,
         times the multiplier.
 
+        Batches of 8,192 states and more are computed by the compiled kernel, smaller ones by the readable recursion,
+        whose last digits are rounded differently. A kernel of your own, `robot.compile(...)`, gives each state the same
+        bits in every batch.
+
         Args:
             q: joint coordinates, (..., nq) [rad or m], or a dict by joint name. nq is nv, but for floating joints,
                 which have x, y, z and a unit quaternion (x, y, z, w); continuous joints take their angle.
@@ -93,6 +101,10 @@ class Robot:
         loads = self._loads(payload)
         batch = batch_shape(arrays, loads)
         rows = int(np.prod(batch, dtype=np.int64))
+        if rows >= KERNEL_FROM:
+            q, v, a = arrays
+            parts = self.compile(RESULTS)(q, v, a, payload=payload)
+            return LinkWrenches.of(parts, self.link_names, self.model.v_names)
         q_, v_, a_ = (np.broadcast_to(x, (*batch, x.shape[-1])).reshape(rows, x.shape[-1]) for x in arrays)
         flat_loads = [flat(load, batch, rows) for load in loads]
         out = empty_wrenches(self.model, rows)

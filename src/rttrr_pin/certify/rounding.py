@@ -130,7 +130,7 @@ def bounded_dynamics(
         loads: payloads.
 
     Returns:
-        The values, the same bits as `Robot.inverse_dynamics` gives, and the bounds, in arrays of the same shapes:
+        The values, the same bits as the readable recursion gives, and the bounds, in arrays of the same shapes:
         the true value lies within bound of value.
     """
     rows = len(q)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -68,17 +68,19 @@ class Program:
         inputs: the arrays it reads; the graph's inputs are their numbers, one array after the other.
         outputs: the arrays it writes.
         results: for each number of the outputs, one array after the other, the node that computes it.
+        sequence: the needed nodes in another order than that of their numbers; each stands behind what it takes.
     """
 
     graph: Graph
     inputs: tuple[Field, ...]
     outputs: tuple[Field, ...]
     results: tuple[int, ...]
+    sequence: tuple[int, ...] = ()
 
     @cached_property
     def order(self) -> tuple[int, ...]:
         """The nodes that are needed, each behind what it takes."""
-        return tuple(self.graph.reachable(self.results))
+        return self.sequence or tuple(self.graph.reachable(self.results))
 
     @property
     def width_in(self) -> int:
@@ -92,22 +94,6 @@ class Program:
         ops = [op[x] for x in self.order]
         angles = {args[x][0] for x in self.order if op[x] in (Op.SIN, Op.COS)}
         return Operations(ops.count(Op.MUL), ops.count(Op.ADD) + ops.count(Op.SUB), ops.count(Op.NEG), len(angles))
-
-    def rebuilt(self, step: Callable[[Graph, Op, tuple[int, ...]], int]) -> Program:
-        """The same program in a new graph, each operation made anew by a step (new graph, op, new args)."""
-        graph = Graph()
-        new: dict[int, int] = {}
-        for x in self.order:
-            op, args = self.graph.op[x], self.graph.args[x]
-            if op is Op.CONSTANT:
-                new[x] = graph.constant(self.graph.value[x])
-            elif op is Op.INPUT:
-                new[x] = graph.input(args[0])
-            else:
-                new[x] = step(graph, op, tuple(new[y] for y in args))
-            if x in self.graph.kept:
-                graph.kept.add(new[x])
-        return replace(self, graph=graph, results=tuple(new[x] for x in self.results))
 
     def evaluate(self, columns: Sequence[Array]) -> list[Array | float]:
         """The outputs for columns of inputs, by NumPy: slow, and the reference for what compiles the program."""

@@ -18,7 +18,6 @@ import sys
 from collections import Counter
 from dataclasses import dataclass
 from functools import cache
-from importlib import metadata, resources
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias, TypeGuard
 
@@ -53,7 +52,7 @@ class Source:
 @cache
 def bundled() -> dict[str, Path]:
     """The robots that come with the package, by name."""
-    packaged = Path(str(resources.files("rttrr_pin"))) / "urdf"
+    packaged = Path(__file__).parents[1] / "urdf"
     in_checkout = Path(__file__).parents[3] / "urdf"  # an editable install leaves the files at the top level
     folder = packaged if packaged.is_dir() else in_checkout
     return {path.stem: path for path in sorted(folder.glob("*.urdf"))}
@@ -69,6 +68,8 @@ def examples() -> dict[str, Path]:
     Raises:
         InputError: the package is not installed.
     """
+    from importlib import metadata  # a tenth of what importing this package takes
+
     try:
         files = metadata.files(EXAMPLES_PACKAGE) or []
     except metadata.PackageNotFoundError:
