@@ -6,6 +6,7 @@ import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,9 @@ from rttrr_pin.model import Joint, Model
 from rttrr_pin.model.inputs import Coordinates, check_quaternions, coordinates, finite
 
 Array = NDArray[np.float64]
+
+One = Callable[..., bool | None]
+"""Computes one state; None where it declines what it was given."""
 
 LoadOf = Callable[[Any], list[Load]]
 """What a user passes as payload, as loads of links."""
@@ -70,7 +74,7 @@ class Kernel:
         self._lock = threading.Lock()
         self._inputs = "".join(field.name for field in fields(model, self.outputs))
         self._floats = any(joint.nq != joint.nv for joint in model.moving)
-        self._one: Callable[..., bool | None] | None = None
+        self._one: One | None = None
 
     def __repr__(self) -> str:
         return f"<Kernel of {self.model.name!r}: {', '.join(self.outputs)} by {self._emitter.name}>"
@@ -112,7 +116,8 @@ class Kernel:
             NumberError: a value is NaN, inf, complex, ..., or so large that the result overflows.
             InputError: an argument is missing, or too many, or `out` is no float64 array that can be written.
         """
-        if self._one is not None and payload is None and out is not None and self._shortcut(q, v, a, out):
+        one = self._one
+        if one is not None and payload is None and one(q, v, a, out):
             return out
         variant_loads = self._loads(payload)
         arrays = self._arrays(q, v, a)
@@ -125,18 +130,6 @@ class Kernel:
         if rows and self._run(variant, inputs, targets, rows, threads):
             self._explain(arrays, loads, variant, targets)
         return self._returned(results, targets, out)
-
-    def _shortcut(self, q: Any, v: Any, a: Any, out: Any) -> bool | None:
-        """One state in float64 arrays, without a look at them in Python."""
-        assert self._one is not None
-        if self._single and a is not None:
-            return self._one(q, v, a, out)
-        given = [x for x in (q, v, a) if x is not None]
-        if self._single:
-            return self._one(*given, out)
-        if isinstance(out, dict) and len(out) == len(self.outputs):
-            return self._one(*given, *(out.get(name) for name in self.outputs))
-        return None
 
     def _loads(self, payload: Any) -> list[Load]:
         if payload is None:
@@ -173,7 +166,7 @@ class Kernel:
                 if found is None:
                     found = self._variants[slots] = self._compiled(slots)
                     if not slots and not self._floats:  # quaternions are looked at in Python
-                        self._one = found.executable.one
+                        self._one = _shortcut(found.executable.one, self._inputs, self.outputs, self._single)
         return found
 
     def _compiled(self, slots: tuple[PayloadSlot, ...]) -> Variant:
@@ -247,6 +240,32 @@ class Kernel:
                     name=field.name,
                     index=(int(bad[0][0]),),
                 )
+
+
+def _shortcut(one: One | None, inputs: str, outputs: tuple[str, ...], single: bool) -> One | None:
+    """The executable's way to compute one state, as a function of (q, v, a, out); it returns None where it declines."""
+    if one is None or (single and inputs == "qva"):
+        return one
+    reads = [name in inputs for name in "qva"]
+
+    def shortcut(q: Any, v: Any, a: Any, out: Any) -> bool | None:
+        if [x is not None for x in (q, v, a)] != reads:
+            return None
+        return one(*(x for x in (q, v, a) if x is not None), out)
+
+    pick = itemgetter(*outputs) if len(outputs) > 1 else lambda out: (out[outputs[0]],)
+
+    def shortcut_to_several(q: Any, v: Any, a: Any, out: Any) -> bool | None:
+        if type(out) is not dict or len(out) != len(outputs):
+            return None
+        try:
+            return one(q, v, a, *pick(out))
+        except KeyError:  # said in words where all is checked
+            return None
+
+    if not single:
+        return shortcut_to_several if inputs == "qva" else None
+    return shortcut
 
 
 def fingerprint(model: Model) -> bytes:

@@ -3,10 +3,12 @@
     q = k pi/2 + r + r_lo,   |r| <= pi/4
     sin r = r + r^3 S(r^2),   cos r = 1 - r^2/2 + r^4 C(r^2)
 
-k pi/2 is subtracted in three parts with fused multiply-adds: the first difference is exact, since it lies on the grid
-of q or of the first part; what the second one rounds off goes into r_lo. S and C are interpolated at Chebyshev nodes
-(`benchmarks/sincos_accuracy.py` makes and measures them: at most 1 unit in the last place over the whole range). From
-`LARGEST` on, and for what is not finite, the C library's functions are called.
+k pi/2 is subtracted in three parts. The first difference t, by a fused multiply-add, is exact, since it lies on the
+grid of q or of the first part. What the second product and the second difference round off goes into r_lo; for the
+difference that is second - (r - t), exactly (Dekker's sum), since t is a multiple of the last place of the product.
+
+S and C are interpolated at Chebyshev nodes (`benchmarks/sincos_accuracy.py` makes and measures them: at most 1 unit in
+the last place over the whole range). From `LARGEST` on, and for what is not finite, the C library's functions serve.
 """
 
 from __future__ import annotations

@@ -11,82 +11,34 @@ state goes through the same instructions: its bits do not depend on its neighbou
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 
 from llvmlite import ir
 
 from rttrr_pin.kernel.emit.layout import ALIGNED, C_CONTIGUOUS, NDARRAY, WRITEABLE
 from rttrr_pin.kernel.emit.llvm_body import Layout
+from rttrr_pin.kernel.emit.llvm_columns import (
+    F32,
+    F64,
+    I32,
+    I64,
+    PTR,
+    Writer,
+    function,
+    number,
+    pack,
+    unpack,
+    unsound,
+    untyped,
+)
 from rttrr_pin.kernel.expression import Op
 from rttrr_pin.kernel.program import Field, Program
 
 RECORD = 5
 """Numbers that describe an array."""
 
-I64, F64, F32, PTR, I1 = ir.IntType(64), ir.DoubleType(), ir.FloatType(), ir.PointerType(), ir.IntType(1)
-I32 = ir.IntType(32)
-
 CONTEXT = ("ndarray", "float64", "none", "true")
 """Python objects whose addresses are set after loading."""
-
-
-def number(x: int) -> ir.Constant:
-    """An int64."""
-    return ir.Constant(I64, x)
-
-
-def _untyped(address: ir.NamedValue) -> ir.NamedValue:
-    """The address as LLVM sees it, of nothing in particular."""
-    address.type = PTR
-    return address
-
-
-@dataclass
-class Writer:
-    """Writes one function; loops keep their counter in memory, which the compiler turns into a register."""
-
-    builder: ir.IRBuilder
-
-    def offset(self, base: ir.Value, bytes_: ir.Value | int) -> ir.Value:
-        """The address so many bytes further."""
-        by = number(bytes_) if isinstance(bytes_, int) else bytes_
-        return self.builder.gep(base, [by], source_etype=ir.IntType(8))
-
-    def load(self, kind: ir.Type, address: ir.Value, align: int | None = None) -> ir.Value:
-        """What stands at an address."""
-        return self.builder.load(address, typ=kind, align=align)
-
-    def store(self, value: ir.Value, address: ir.Value, align: int | None = None) -> None:
-        """Write to an address."""
-        self.builder.store(value, address, align=align)
-
-    @contextmanager
-    def loop(self, stop: ir.Value, step: int = 1, start: ir.Value | None = None) -> Iterator[ir.Value]:
-        """From start (0) to stop by step."""
-        b = self.builder
-        first, body_, after = (b.append_basic_block(name) for name in ("head", "body", "after"))
-        before = b.block
-        b.branch(first)
-        b.position_at_end(first)
-        i = b.phi(I64)
-        i.add_incoming(start or number(0), before)
-        b.cbranch(b.icmp_signed("<", i, stop), body_, after)
-        b.position_at_end(body_)
-        yield i
-        i.add_incoming(b.add(i, number(step)), b.block)
-        b.branch(first)
-        b.position_at_end(after)
-
-    def memory(self, kind: ir.Type, count: int = 1) -> ir.Value:
-        """Memory of this function's own, on a cache line."""
-        memory = self.builder.alloca(kind, count)
-        memory.align = 64
-        return _untyped(memory)
-
-    def least(self, x: ir.Value, y: ir.Value) -> ir.Value:
-        """The smaller of two."""
-        return self.builder.select(self.builder.icmp_signed("<", x, y), x, y)
 
 
 def driver(program: Program, layout: Layout, between: int) -> str:
@@ -106,9 +58,9 @@ def driver(program: Program, layout: Layout, between: int) -> str:
         layout=layout,
         between=between,
         body=ir.Function(module, ir.FunctionType(ir.VoidType(), [PTR, PTR, PTR, I64]), "body"),
-        pack={kind: _pack(module, layout, kind) for kind in (F64, F32)},
-        unpack=_unpack(module, layout),
-        unsound=_unsound(module, layout),
+        pack={kind: pack(module, layout, kind) for kind in (F64, F32)},
+        unpack=unpack(module, layout),
+        unsound=unsound(module, layout),
     )
     _run(module, block)
     _one(module, block)
@@ -206,100 +158,9 @@ def _unread(program: Program) -> list[int]:
     return [place for place in range(program.width_in) if place not in read]
 
 
-def _function(
-    module: ir.Module, name: str, result: ir.Type, arguments: Sequence[ir.Type], internal: bool = True
-) -> tuple[ir.Function, Writer]:
-    function = ir.Function(module, ir.FunctionType(result, arguments), name)
-    if internal:
-        function.linkage = "internal"
-        function.attributes.add("noinline")
-    return function, Writer(ir.IRBuilder(function.append_basic_block("start")))
-
-
-def _pack(module: ir.Module, layout: Layout, kind: ir.Type) -> ir.Function:
-    """Gather m states of an array into columns; lanes beyond m repeat the last state."""
-    name = "pack_f64" if kind is F64 else "pack_f32"
-    function, w = _function(module, name, ir.VoidType(), [PTR, I64, I64, I64, PTR, I64])
-    source, row, column, count, target, m = function.args
-    b, W, column_bytes = w.builder, layout.lanes, layout.pitch * 8
-    vector = ir.VectorType(F64, W)
-    if kind is F64:
-        whole = b.and_(b.icmp_signed("==", row, number(8)), b.icmp_signed("==", b.and_(m, number(W - 1)), number(0)))
-        with b.if_then(whole):
-            with w.loop(count) as j:
-                x, y = w.offset(source, b.mul(j, column)), w.offset(target, b.mul(j, number(column_bytes)))
-                with w.loop(m, W) as i:
-                    at = b.shl(i, number(3))
-                    w.store(w.load(vector, w.offset(x, at), 8), w.offset(y, at), 8)
-            b.ret_void()
-    last = b.sub(m, number(1))
-    with w.loop(m, W) as i:
-        rows = [w.offset(source, b.mul(w.least(b.add(i, number(k)), last), row)) for k in range(W)]
-        to = w.offset(target, b.shl(i, number(3)))
-        with w.loop(count) as j:
-            at = b.mul(j, column)
-            value: ir.Value = ir.Constant(vector, ir.Undefined)
-            for k, x in enumerate(rows):
-                item = w.load(kind, w.offset(x, at), 1)
-                value = b.insert_element(value, item if kind is F64 else b.fpext(item, F64), ir.Constant(I32, k))
-            w.store(value, w.offset(to, b.mul(j, number(column_bytes))), 8)
-    b.ret_void()
-    return function
-
-
-def _unpack(module: ir.Module, layout: Layout) -> ir.Function:
-    """Scatter m states from columns into an array."""
-    function, w = _function(module, "unpack_f64", ir.VoidType(), [PTR, I64, I64, I64, PTR, I64])
-    target, row, column, count, source, m = function.args
-    b, W, column_bytes = w.builder, layout.lanes, layout.pitch * 8
-    vector = ir.VectorType(F64, W)
-    full = b.and_(m, number(-W))
-    whole = b.and_(b.icmp_signed("==", row, number(8)), b.icmp_signed("==", full, m))
-    with b.if_then(whole):
-        with w.loop(count) as j:
-            x, y = w.offset(target, b.mul(j, column)), w.offset(source, b.mul(j, number(column_bytes)))
-            with w.loop(m, W) as i:
-                at = b.shl(i, number(3))
-                w.store(w.load(vector, w.offset(y, at), 8), w.offset(x, at), 8)
-        b.ret_void()
-    with w.loop(full, W) as i:
-        rows = [w.offset(target, b.mul(b.add(i, number(k)), row)) for k in range(W)]
-        origin = w.offset(source, b.shl(i, number(3)))
-        with w.loop(count) as j:
-            at = b.mul(j, column)
-            value = w.load(vector, w.offset(origin, b.mul(j, number(column_bytes))), 8)
-            for k, y in enumerate(rows):
-                w.store(b.extract_element(value, ir.Constant(I32, k)), w.offset(y, at), 1)
-    with w.loop(m, 1, full) as i:
-        to, origin = w.offset(target, b.mul(i, row)), w.offset(source, b.shl(i, number(3)))
-        with w.loop(count) as j:
-            w.store(w.load(F64, w.offset(origin, b.mul(j, number(column_bytes)))), w.offset(to, b.mul(j, column)), 1)
-    b.ret_void()
-    return function
-
-
-def _unsound(module: ir.Module, layout: Layout) -> ir.Function:
-    """Whether m states have a number that is not finite: 0 x is 0 but for those, whose sum is NaN."""
-    function, w = _function(module, "unsound", I1, [PTR, I64, I64])
-    source, count, m = function.args
-    b, W = w.builder, layout.lanes
-    vector = ir.VectorType(F64, W)
-    zero = ir.Constant(vector, [0.0] * W)
-    total = w.memory(vector)
-    w.store(zero, total)
-    with w.loop(count) as j:
-        column = w.offset(source, b.mul(j, number(layout.pitch * 8)))
-        with w.loop(m, W) as i:
-            x = w.load(vector, w.offset(column, b.shl(i, number(3))), 8)
-            w.store(b.fadd(w.load(vector, total), b.fmul(x, zero, flags=("contract",)), flags=("contract",)), total)
-    bad = b.fcmp_unordered("uno", w.load(vector, total), zero)
-    b.ret(b.icmp_unsigned("!=", b.bitcast(bad, ir.IntType(W)), ir.Constant(ir.IntType(W), 0)))
-    return function
-
-
 def _run(module: ir.Module, block: _Block) -> None:
     """The function int64 run(int64 *arrays, int64 start, int64 stop)."""
-    _, w = _function(module, "run", I64, [PTR, I64, I64], internal=False)
+    _, w = function(module, "run", I64, [PTR, I64, I64], internal=False)
     b = w.builder
     records, start, stop = b.function.args
     scratch = block.scratch(w)
@@ -323,10 +184,10 @@ def _one(module: ir.Module, block: _Block) -> None:
     """The function one: computes a state and returns True, or declines what it was given and returns None."""
     context = ir.GlobalVariable(module, ir.ArrayType(PTR, len(CONTEXT)), "context")
     context.initializer = ir.Constant(context.value_type, None)
-    _untyped(context)
+    untyped(context)
     _set_context(module, context)
     incref = ir.Function(module, ir.FunctionType(ir.VoidType(), [PTR]), "Py_IncRef")
-    _, w = _function(module, "one", PTR, [PTR, PTR, I64], internal=False)
+    _, w = function(module, "one", PTR, [PTR, PTR, I64], internal=False)
     b = w.builder
     _, args, count = b.function.args
     ndarray, float64, none, true = (w.load(PTR, w.offset(context, 8 * k)) for k in range(len(CONTEXT)))
@@ -372,7 +233,7 @@ def _require(b: ir.IRBuilder, condition: ir.Value, otherwise: ir.Block) -> None:
 
 def _set_context(module: ir.Module, context: ir.GlobalVariable) -> None:
     """The function void set_context(int64 place, void *object)."""
-    _, w = _function(module, "set_context", ir.VoidType(), [I64, PTR], internal=False)
+    _, w = function(module, "set_context", ir.VoidType(), [I64, PTR], internal=False)
     place, item = w.builder.function.args
     w.store(item, w.offset(context, w.builder.mul(place, number(8))))
     w.builder.ret_void()
