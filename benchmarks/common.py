@@ -12,20 +12,21 @@ from typing import Any
 
 RESULTS = Path(__file__).parent / "results"
 
-PACKAGES = ("rttrr-pin", "pin", "numpy", "yourdfpy")
+PACKAGES = ("rttrr-pin", "pin", "numpy", "yourdfpy", "llvmlite")
 
 
 def machine() -> dict[str, Any]:
     """The kind of machine: processor, cores, system."""
-    model = platform.processor() or platform.machine()
+    model, vectors = platform.processor() or platform.machine(), ""
     info = Path("/proc/cpuinfo")
     if info.exists():
-        names = [
-            line.split(":", 1)[1].strip() for line in info.read_text().splitlines() if line.startswith("model name")
-        ]
-        model = names[0] if names else model
+        lines = [line.partition(":") for line in info.read_text().splitlines()]
+        model = next((value.strip() for key, _, value in lines if key.strip() == "model name"), model)
+        flags = next((value.split() for key, _, value in lines if key.strip() == "flags"), [])
+        vectors = "AVX-512" if "avx512f" in flags else "AVX2" if "avx2" in flags else "no AVX2"
     return {
         "processor": model,
+        "vectors": vectors,
         "cores": os.cpu_count(),
         "system": platform.system(),
         "python": platform.python_version(),

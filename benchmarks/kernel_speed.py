@@ -20,7 +20,7 @@ import numpy as np
 
 import rttrr_pin
 from common import arguments, finish
-from kernel_speed_limits import available_states, copy
+from kernel_speed_limits import available_states, copy, operations, peak
 from kernel_speed_report import check, compare, plot, show
 from peers_run import ENVIRONMENTS, PEERS, Array, interpreter, requirements, run_peer
 from rttrr_pin.validate.states import Sampler, States
@@ -54,7 +54,21 @@ def main() -> int:
         rows += measure(name, peers, chosen)
     fits = [row for row in rows if row["what"].startswith("kernel")]
     holds = all(row["verdict"] == "agrees" for row in fits)
-    figures = {"seed": SEED, "repeats": chosen.repeats, "agreement": AGREEMENT, "holds": holds, "rows": rows}
+    needs = {name: operations(rttrr_pin.load(ROBOTS[name]).compile("tau").program) for name in robots}
+    rate = peak()
+    limits = {
+        "peak_fma_per_ns": round(rate, 2),
+        "operations": needs,
+        "ns_at_peak": {name: round(need / rate, 2) for name, need in needs.items()},
+    }
+    figures = {
+        "seed": SEED,
+        "repeats": chosen.repeats,
+        "one_core": limits,
+        "agreement": AGREEMENT,
+        "holds": holds,
+        "rows": rows,
+    }
     show(rows)
     if chosen.compare:
         compare(rows, chosen.compare)
@@ -69,7 +83,8 @@ def parsed() -> argparse.Namespace:
     names = [*ROBOTS, "kernel", *requirements()["peers"]]
     parser = arguments(__doc__ or "")
     parser.add_argument("--states", type=int, nargs="+", default=[1_000, 100_000, 1_000_000], metavar="N")
-    parser.add_argument("--peer-states", type=int, default=100_000, help="most states for peers in their own process")
+    parser.add_argument("--peer-states", type=int, nargs="*", default=[100_000], metavar="N", help="at which peers run")
+    parser.add_argument("--peer-threads", choices=("one", "all"), default="one", help="one thread, or all as well")
     parser.add_argument("--repeats", type=int, default=7)
     parser.add_argument("--only", nargs="+", choices=names, default=[], metavar="NAME", help=", ".join(names))
     parser.add_argument("--envs", type=Path, default=ENVIRONMENTS, help="folder made by peers_setup.py")
@@ -94,7 +109,7 @@ def measure(name: str, peers: list[str], chosen: argparse.Namespace) -> list[dic
             for threads in sorted({1, len(os.sched_getaffinity(0))}):
                 here = {"robot": name, "states": count, "threads": threads}
                 found, reference = in_process(kernel, read(file, urdf, threads), chosen.repeats, here)
-                if count <= chosen.peer_states:
+                if count in chosen.peer_states and (threads == 1 or chosen.peer_threads == "all"):
                     found += in_own_processes(peers, file, urdf, reference, here, chosen)
                 rows += rated(found, here)
     return rows

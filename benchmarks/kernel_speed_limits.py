@@ -1,13 +1,20 @@
-"""What bounds any kernel: the memory it streams through, and the memory there is."""
+"""What bounds any kernel: the memory it streams through, the operations it needs, and the memory there is."""
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+
+from rttrr_pin.kernel.cost import fused
+from rttrr_pin.kernel.emit import emitter
+from rttrr_pin.kernel.emit.llvm_body import Lines, polynomials
+from rttrr_pin.kernel.expression import Graph
+from rttrr_pin.kernel.program import Field, Program
 
 Array = NDArray[np.float64]
 
@@ -35,3 +42,29 @@ def available_states(wanted: int, nv: int) -> int:
     info = Path("/proc/meminfo")
     free = [line.split()[1] for line in info.read_text().splitlines() if line.startswith("MemAvailable")]
     return min(wanted, int(free[0]) * 1024 // 2 // (8 * nv * ARRAYS)) if free else wanted
+
+
+def operations(program: Program) -> int:
+    """Instructions that one state needs, with products fused into sums, sines and cosines by their polynomials."""
+    lines = Lines(1)
+    polynomials(lines, "%q")
+    return fused(program) + lines.count * program.operations.sincos
+
+
+def peak(chains: int = 10, length: int = 400, states: int = 2048, repeats: int = 30) -> float:
+    """Fused multiply-adds that one core completes in a nanosecond, with nothing to load or store: measured."""
+    graph = Graph()
+    values = [graph.input(k) for k in range(chains)]
+    factor, term = graph.input(chains), graph.input(chains + 1)
+    for _ in range(length):
+        values = [graph.add(graph.mul(x, factor), term) for x in values]
+    program = Program(graph, (Field("x", (chains + 2,)),), (Field("y", (chains,)),), tuple(values))
+    machine = emitter("llvm")
+    executable = machine.load(machine.emit(program), program.inputs, program.outputs)
+    task = executable.bind([np.full((states, chains + 2), 0.5)], [np.empty((states, chains))])
+    times = []
+    for _ in range(repeats):
+        start = time.perf_counter()
+        task(0, states)
+        times.append(time.perf_counter() - start)
+    return chains * length * states / min(times) / 1e9

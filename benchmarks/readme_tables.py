@@ -1,26 +1,25 @@
-"""The tables of the README, made from benchmarks/results: `python benchmarks/readme_tables.py [--check]`.
+"""The tables of the documents, made from benchmarks/results: `python benchmarks/readme_tables.py [--check]`.
 
-Without --check the README is rewritten between its markers; with it, exit 1 if it is out of date.
+Without --check the pages are rewritten between their markers; with it, exit 1 if one is out of date.
 """
 
 from __future__ import annotations
 
 import argparse
-import json
 import sys
-from pathlib import Path
+from collections.abc import Callable
 from typing import Any
 
-HERE = Path(__file__).parent
-README = HERE.parent / "README.md"
+import kernel_tables
+from saved import TOP, machine, result
 
 
 def agreement_table() -> list[str]:
-    data = _result("agreement")
+    data = result("agreement")
     pin = data["versions"]["pin"]
     return [
         f"{data['states']:,} random states of RTTRR with a random payload, ours against Pinocchio {pin}: "
-        f"**{data['verdict']}** ({_machine(data)}; `python benchmarks/agreement.py`).",
+        f"**{data['verdict']}** ({machine(data)}; `python benchmarks/agreement.py`).",
         "",
         "| | tau | F | N | f | n |",
         "|---|---|---|---|---|---|",
@@ -34,9 +33,9 @@ def agreement_table() -> list[str]:
 
 
 def cost_table() -> list[str]:
-    data = _result("cost")
+    data = result("cost")
     lines = [
-        f"Cost of the whole command, process start included ({_machine(data)}; `python benchmarks/validate_cost.py`):",
+        f"Cost of the whole command, process start included ({machine(data)}; `python benchmarks/validate_cost.py`):",
         "",
         "| `rttrr-pin validate --states` | wall time, median | peak memory, median |",
         "|---|---|---|",
@@ -46,7 +45,7 @@ def cost_table() -> list[str]:
 
 
 def robots_table() -> list[str]:
-    robots, trees = _result("example_robots"), _result("random_trees")
+    robots, trees = result("example_robots"), result("random_trees")
     by_name: dict[str, list[dict[str, Any]]] = {}
     for entry in robots["entries"]:
         by_name.setdefault(entry["name"], []).append(entry)
@@ -59,7 +58,7 @@ def robots_table() -> list[str]:
     version = robots["example-robot-data"]
     bad = robots["verdicts"].get("disagree", 0)
     lines = [
-        f"Other robots ({_machine(robots)}; `python benchmarks/example_robots.py`, `benchmarks/random_trees.py`):",
+        f"Other robots ({machine(robots)}; `python benchmarks/example_robots.py`, `benchmarks/random_trees.py`):",
         "",
         "| | robots | states, each base | agree | worst normwise error | worst share | time |",
         "|---|---|---|---|---|---|---|",
@@ -81,21 +80,21 @@ def robots_table() -> list[str]:
     return [*lines, "", *told.values()] if told else lines
 
 
-TABLES = {"agreement": agreement_table, "cost": cost_table, "robots": robots_table}
+TABLES: dict[str, dict[str, Callable[[], list[str]]]] = {
+    "README.md": {
+        "agreement": agreement_table,
+        "speed": kernel_tables.speed,
+        "cost": cost_table,
+        "robots": robots_table,
+    },
+    "docs/kernel.md": {"operations": kernel_tables.operations, "peers": kernel_tables.peers},
+}
+"""By page, then by marker."""
 
 
-def _result(name: str) -> dict[str, Any]:
-    data: dict[str, Any] = json.loads((HERE / "results" / f"{name}.json").read_text())
-    return data
-
-
-def _machine(data: dict[str, Any]) -> str:
-    return f"{data['machine']['processor']}, {data['machine']['cores']} cores"
-
-
-def rebuilt(text: str) -> str:
-    """The README with its tables made anew."""
-    for name, table in TABLES.items():
+def rebuilt(page: str, text: str) -> str:
+    """A page with its tables made anew."""
+    for name, table in TABLES[page].items():
         begin, end = f"<!-- table: {name} -->\n", f"<!-- end: {name} -->"
         head, rest = text.split(begin)
         text = head + begin + "\n".join(table()) + "\n" + end + rest.split(end, 1)[1]
@@ -106,12 +105,13 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--check", action="store_true")
     check = parser.parse_args().check
-    text = README.read_text()
-    new = rebuilt(text)
+    old = {page: (TOP / page).read_text() for page in TABLES}
+    new = {page: rebuilt(page, text) for page, text in old.items()}
     if check:
-        print("the tables are up to date" if new == text else "run python benchmarks/readme_tables.py")
-        return int(new != text)
-    README.write_text(new)
+        print("the tables are up to date" if new == old else "run python benchmarks/readme_tables.py")
+        return int(new != old)
+    for page, text in new.items():
+        (TOP / page).write_text(text)
     return 0
 
 

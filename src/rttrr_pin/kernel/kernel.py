@@ -6,6 +6,7 @@ import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import prod
 from operator import itemgetter
 from typing import Any
 
@@ -117,13 +118,13 @@ class Kernel:
             InputError: an argument is missing, or too many, or `out` is no float64 array that can be written.
         """
         one = self._one
-        if one is not None and payload is None and one(q, v, a, out):
+        if one is not None and payload is None and threads is None and one(q, v, a, out):
             return out
         variant_loads = self._loads(payload)
         arrays = self._arrays(q, v, a)
         loads = {f"payload_{k}_{name}": getattr(load, name) for k, load in enumerate(variant_loads) for name in "fn"}
         batch = _batch_shape(arrays | loads)
-        rows = int(np.prod(batch, dtype=np.int64))
+        rows = prod(batch)
         inputs = [_rows(x, batch, rows) for x in (*arrays.values(), *loads.values())]
         variant = self._variant(tuple(PayloadSlot(load.link, load.in_base) for load in variant_loads))
         targets, results = self._targets(variant, out, batch, rows, inputs)
@@ -149,10 +150,10 @@ class Kernel:
                     f"{name} {what}: {', '.join(self.outputs)} depend on {', '.join(self._inputs)}; pass these"
                 )
             if x is not None:
-                arrays[name] = _as_is(x, self._width(name)) or [coordinates(name, x, self.model.moving)]
+                arrays[name] = x if _readable(x, self._width(name)) else coordinates(name, x, self.model.moving)
         if self._floats and "q" in arrays:
-            check_quaternions(np.asarray(arrays["q"][0], dtype=np.float64), self.model.moving)
-        return {name: array for name, (array,) in arrays.items()}
+            check_quaternions(np.asarray(arrays["q"], dtype=np.float64), self.model.moving)
+        return arrays
 
     def _width(self, name: str) -> int:
         return self.model.nq if name == "q" else self.model.nv
@@ -284,11 +285,11 @@ def _labels(name: str, joints: Sequence[Joint]) -> list[str]:
     return [label for joint in joints for label in (joint.q_labels() if name == "q" else joint.v_labels())]
 
 
-def _as_is(x: Any, width: int) -> list[NDArray[Any]] | None:
-    """An array that compiled code can read where it lies."""
+def _readable(x: Any, width: int) -> bool:
+    """Whether compiled code can read an array where it lies; all else is checked, and copied if need be."""
     if type(x) is not np.ndarray or x.dtype not in (np.float64, np.float32) or not x.flags.aligned:
-        return None
-    return [x] if x.dtype.isnative and x.ndim and x.shape[-1] == width else None
+        return False
+    return bool(x.dtype.isnative and x.ndim and x.shape[-1] == width)
 
 
 def _batch_shape(arrays: Mapping[str, NDArray[Any]]) -> tuple[int, ...]:

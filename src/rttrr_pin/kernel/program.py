@@ -68,19 +68,17 @@ class Program:
         inputs: the arrays it reads; the graph's inputs are their numbers, one array after the other.
         outputs: the arrays it writes.
         results: for each number of the outputs, one array after the other, the node that computes it.
-        sequence: the needed nodes in another order than that of their numbers; each stands behind what it takes.
     """
 
     graph: Graph
     inputs: tuple[Field, ...]
     outputs: tuple[Field, ...]
     results: tuple[int, ...]
-    sequence: tuple[int, ...] = ()
 
     @cached_property
     def order(self) -> tuple[int, ...]:
         """The nodes that are needed, each behind what it takes."""
-        return self.sequence or tuple(self.graph.reachable(self.results))
+        return tuple(self.graph.reachable(self.results))
 
     @property
     def width_in(self) -> int:

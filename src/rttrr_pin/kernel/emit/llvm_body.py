@@ -247,7 +247,7 @@ class _Writer:
     def _sincos(self, q: str) -> tuple[str, str]:
         """Sine and cosine, by the polynomials; angles beyond their range are done over by the C library."""
         lines = self.lines
-        s, c = _polynomials(lines, q)
+        s, c = polynomials(lines, q)
         size = lines(f"call {lines.vector} @llvm.fabs.v{lines.lanes}f64({lines.vector} {q})")
         beyond = lines(f"fcmp ugt {lines.vector} {size}, {lines.splat(LARGEST)}")  # also NaN
         some = lines(f"bitcast <{lines.lanes} x i1> {beyond} to i{lines.lanes}")
@@ -276,7 +276,7 @@ class _Writer:
         return lines(f"select <{lines.lanes} x i1> {beyond}, {v} {new}, {v} {old}")
 
 
-def _polynomials(lines: Lines, q: str) -> tuple[str, str]:
+def polynomials(lines: Lines, q: str) -> tuple[str, str]:
     """Sine and cosine for |q| up to LARGEST; see `rttrr_pin.kernel.sincos`."""
     splat, fma, op, bits = lines.splat, lines.fma, lines.op, lines.bits
     shifted = fma(q, splat(TWO_OVER_PI), splat(ROUND))

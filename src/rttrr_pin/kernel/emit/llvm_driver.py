@@ -1,7 +1,7 @@
 """The compiled code around a program: blocks of states in and out, and the call from Python for a single state.
 
     int64 run(int64 *arrays, int64 start, int64 stop)    some states of a batch; 1 where a result is not finite
-    PyObject *one(PyObject *self, PyObject *const *args, Py_ssize_t count)    one state, called by CPython
+    PyObject *one(PyObject *self, PyObject *const *args, Py_ssize_t count)    up to MOST states, called by CPython
 
 `arrays` has `RECORD` numbers for each input, then each output: address, distance in bytes from state to state and from
 column to column, count of columns, 1 for float32. States are gathered into columns, so that whatever the layout, every
@@ -11,7 +11,7 @@ state goes through the same instructions: its bits do not depend on its neighbou
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from llvmlite import ir
 
@@ -20,6 +20,7 @@ from rttrr_pin.kernel.emit.llvm_body import Layout
 from rttrr_pin.kernel.emit.llvm_columns import (
     F32,
     F64,
+    I1,
     I32,
     I64,
     PTR,
@@ -36,6 +37,9 @@ from rttrr_pin.kernel.program import Field, Program
 
 RECORD = 5
 """Numbers that describe an array."""
+
+MOST = 4096
+"""States that `one` computes in one call; more are worth threads, and must not hold up Ctrl-C."""
 
 CONTEXT = ("ndarray", "float64", "none", "true")
 """Python objects whose addresses are set after loading."""
@@ -161,27 +165,29 @@ def _unread(program: Program) -> list[int]:
 def _run(module: ir.Module, block: _Block) -> None:
     """The function int64 run(int64 *arrays, int64 start, int64 stop)."""
     _, w = function(module, "run", I64, [PTR, I64, I64], internal=False)
-    b = w.builder
-    records, start, stop = b.function.args
-    scratch = block.scratch(w)
+    records, start, stop = w.builder.function.args
+    fields = block.program.inputs + block.program.outputs
+    described = [
+        [w.load(I64, w.offset(records, 8 * (RECORD * k + entry))) for entry in (0, 1, 2, 4)] for k in range(len(fields))
+    ]
+    arrays = [Array(w.builder.inttoptr(base, PTR), *rest) for base, *rest in described]
+    w.builder.ret(_blocks(w, block, arrays, start, stop))
+
+
+def _blocks(w: Writer, block: _Block, arrays: Sequence[Array], start: ir.Value, stop: ir.Value) -> ir.Value:
+    """Compute the states from start to stop, block by block; not 0 where a result is not finite."""
+    b, scratch = w.builder, block.scratch(w)
     bad = w.memory(I64)
     w.store(number(0), bad)
-    described = [
-        [w.load(I64, w.offset(records, 8 * (RECORD * k + entry))) for entry in (0, 1, 2, 4)]
-        for k in range(len(block.program.inputs + block.program.outputs))
-    ]
     with w.loop(stop, block.layout.block, start) as first:
         m = w.least(number(block.layout.block), b.sub(stop, first))
-        arrays = [
-            Array(b.inttoptr(b.add(address, b.mul(first, row)), PTR), row, column, single)
-            for address, row, column, single in described
-        ]
-        w.store(b.or_(w.load(I64, bad), b.zext(block.write(w, arrays, m, scratch), I64)), bad)
-    b.ret(w.load(I64, bad))
+        here = [replace(array, base=w.offset(array.base, b.mul(first, array.row))) for array in arrays]
+        w.store(b.or_(w.load(I64, bad), b.zext(block.write(w, here, m, scratch), I64)), bad)
+    return w.load(I64, bad)
 
 
 def _one(module: ir.Module, block: _Block) -> None:
-    """The function one: computes a state and returns True, or declines what it was given and returns None."""
+    """The function one: computes a state or a small batch and returns True, or declines and returns None."""
     context = ir.GlobalVariable(module, ir.ArrayType(PTR, len(CONTEXT)), "context")
     context.initializer = ir.Constant(context.value_type, None)
     untyped(context)
@@ -190,20 +196,21 @@ def _one(module: ir.Module, block: _Block) -> None:
     _, w = function(module, "one", PTR, [PTR, PTR, I64], internal=False)
     b = w.builder
     _, args, count = b.function.args
-    ndarray, float64, none, true = (w.load(PTR, w.offset(context, 8 * k)) for k in range(len(CONTEXT)))
+    kinds = [w.load(PTR, w.offset(context, 8 * k)) for k in range(2)]
+    none, true = (w.load(PTR, w.offset(context, 8 * k)) for k in (2, 3))
     refuse = b.append_basic_block("refuse")
     fields = block.program.inputs + block.program.outputs
     _require(b, b.icmp_signed("==", count, number(len(fields))), refuse)
+    items = [w.load(PTR, w.offset(args, 8 * k)) for k in range(len(fields))]
+    batched, m = number(0), number(1)
     arrays = []
-    for k, field in enumerate(fields):
-        item = w.load(PTR, w.offset(args, 8 * k))
-        _require(b, b.icmp_unsigned("==", w.load(PTR, w.offset(item, NDARRAY["type"])), ndarray), refuse)
-        _require(b, b.icmp_unsigned("==", w.load(PTR, w.offset(item, NDARRAY["descr"])), float64), refuse)
-        output = k >= len(block.program.inputs)
-        _require_shape(w, item, field, ALIGNED | (C_CONTIGUOUS | WRITEABLE if output else 0), refuse)
-        column = number(8) if output else w.load(I64, w.load(PTR, w.offset(item, NDARRAY["strides"])))
-        arrays.append(Array(w.load(PTR, w.offset(item, NDARRAY["data"])), number(0), column))
-    _require(b, b.not_(block.write(w, arrays, number(1), block.scratch(w))), refuse)
+    for k, (item, field) in enumerate(zip(items, fields, strict=True)):
+        _require_float64(w, item, kinds, refuse)
+        if k == 0:
+            batched, m = _batch(w, item, field, refuse)
+        arrays.append(_understood(w, item, field, (batched, m, k >= len(block.program.inputs)), refuse))
+    _require_apart(w, block, arrays, m, refuse)
+    _require(b, b.icmp_signed("==", _blocks(w, block, arrays, number(0), m), number(0)), refuse)
     b.call(incref, [true])
     b.ret(true)
     b.position_at_end(refuse)
@@ -211,17 +218,59 @@ def _one(module: ir.Module, block: _Block) -> None:
     b.ret(none)
 
 
-def _require_shape(w: Writer, item: ir.Value, field: Field, flags: int, refuse: ir.Block) -> None:
-    """One state's array: as many axes, each of its length, and the flags."""
+def _require_float64(w: Writer, item: ir.Value, kinds: Sequence[ir.Value], refuse: ir.Block) -> None:
+    """An array, and of float64."""
+    for key, kind in zip(("type", "descr"), kinds, strict=True):
+        _require(w.builder, w.builder.icmp_unsigned("==", w.load(PTR, w.offset(item, NDARRAY[key])), kind), refuse)
+
+
+def _batch(w: Writer, item: ir.Value, field: Field, refuse: ir.Block) -> tuple[ir.Value, ir.Value]:
+    """Whether the first array has one axis more than a state, 0 or 1, and how many states there are."""
     b = w.builder
-    ndim = w.load(I32, w.offset(item, NDARRAY["ndim"]))
-    _require(b, b.icmp_signed("==", ndim, ir.Constant(I32, len(field.shape))), refuse)
-    shape = w.load(PTR, w.offset(item, NDARRAY["shape"]))
+    axes = b.sub(w.load(I32, w.offset(item, NDARRAY["ndim"])), ir.Constant(I32, len(field.shape)))
+    _require(b, b.icmp_unsigned("<=", axes, ir.Constant(I32, 1)), refuse)
+    batched = b.zext(axes, I64)
+    several = b.icmp_signed("==", batched, number(1))
+    m = b.select(several, w.load(I64, w.load(PTR, w.offset(item, NDARRAY["shape"]))), number(1))
+    _require(b, b.and_(b.icmp_signed(">=", m, number(1)), b.icmp_signed("<=", m, number(MOST))), refuse)
+    return batched, m
+
+
+def _understood(
+    w: Writer, item: ir.Value, field: Field, of: tuple[ir.Value, ir.Value, bool], refuse: ir.Block
+) -> Array:
+    """One array, if it has the axes and the flags that it must have."""
+    b, (batched, m, output) = w.builder, of
+    several = b.icmp_signed("==", batched, number(1))
+    axes = b.add(batched, number(len(field.shape)))
+    ndim = b.sext(w.load(I32, w.offset(item, NDARRAY["ndim"])), I64)
+    _require(b, b.icmp_signed("==", ndim, axes), refuse)
+    shape, strides = (w.load(PTR, w.offset(item, NDARRAY[key])) for key in ("shape", "strides"))
+    _require(b, b.icmp_signed("==", b.select(several, w.load(I64, shape), m), m), refuse)
+    skipped = b.shl(batched, number(3))
     for axis, length in enumerate(field.shape):
-        _require(b, b.icmp_signed("==", w.load(I64, w.offset(shape, 8 * axis)), number(length)), refuse)
-    wanted = ir.Constant(I32, flags)
+        found = w.load(I64, w.offset(w.offset(shape, skipped), 8 * axis))
+        _require(b, b.icmp_signed("==", found, number(length)), refuse)
+    dense = ir.Constant(I32, ALIGNED | C_CONTIGUOUS | (WRITEABLE if output else 0))
+    wanted = dense if output else b.select(several, dense, ir.Constant(I32, ALIGNED))
     has = b.and_(w.load(I32, w.offset(item, NDARRAY["flags"])), wanted)
     _require(b, b.icmp_signed("==", has, wanted), refuse)
+    column = number(8) if output else w.load(I64, w.offset(strides, skipped))
+    return Array(w.load(PTR, w.offset(item, NDARRAY["data"])), number(8 * field.width), column)
+
+
+def _require_apart(w: Writer, block: _Block, arrays: Sequence[Array], m: ir.Value, refuse: ir.Block) -> None:
+    """No output may lie over an input that a later block reads; within one block all is read before it is written."""
+    b, count = w.builder, len(block.program.inputs)
+    ends = [b.ptrtoint(w.offset(array.base, b.mul(m, array.row)), I64) for array in arrays]
+    starts = [b.ptrtoint(array.base, I64) for array in arrays]
+    apart = b.icmp_signed("<=", m, number(block.layout.block))
+    clear: ir.Value = ir.Constant(I1, 1)
+    for k in range(count, len(arrays)):
+        for i in range(count):
+            before, behind = (b.icmp_unsigned("<=", *pair) for pair in ((ends[k], starts[i]), (ends[i], starts[k])))
+            clear = b.and_(clear, b.or_(before, behind))
+    _require(b, b.or_(apart, clear), refuse)
 
 
 def _require(b: ir.IRBuilder, condition: ir.Value, otherwise: ir.Block) -> None:
