@@ -40,6 +40,10 @@ class Robot:
         self.model = model
         self._kernels: dict[object, Kernel] = {}
 
+    def __getstate__(self) -> dict[str, object]:
+        """The data alone: a copy, or another process, compiles or reads its own kernels."""
+        return {"model": self.model, "_kernels": {}}
+
     def __repr__(self) -> str:
         joints = ", ".join(f"{joint.name} ({joint.type})" for joint in self.model.moving)
         return f"<Robot {self.name!r}: {joints or 'no moving joint'}>"

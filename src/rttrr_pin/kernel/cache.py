@@ -68,13 +68,18 @@ def read(name: str) -> bytes | None:
         data = path.read_bytes()
     except OSError:
         return None
-    if hashlib.sha256(data[DIGEST:]).digest() != data[:DIGEST]:
+    if _digest(name, data[DIGEST:]) != data[:DIGEST]:
         with contextlib.suppress(OSError):
             path.unlink()
         return None
     with contextlib.suppress(OSError):
         os.utime(path)  # used now
     return data[DIGEST:]
+
+
+def _digest(name: str, data: bytes) -> bytes:
+    """Of an entry under its name: one that was renamed is no entry."""
+    return hashlib.sha256(name.encode() + b"\0" + data).digest()
 
 
 def write(name: str, data: bytes) -> None:
@@ -87,14 +92,14 @@ def write(name: str, data: bytes) -> None:
         where.mkdir(parents=True, exist_ok=True)
         handle, partial = tempfile.mkstemp(prefix=name, suffix=".partial", dir=where)
         with os.fdopen(handle, "wb") as file:
-            file.write(hashlib.sha256(data).digest() + data)
+            file.write(_digest(name, data) + data)
         Path(partial).replace(where / (name + SUFFIX))
         _drop_the_oldest(where)
     except OSError as error:
         if partial is not None:
             with contextlib.suppress(OSError):
                 Path(partial).unlink()
-        _warn(str(where), str(error))
+        _warn(str(where), error.strerror or type(error).__name__)
 
 
 @cache
@@ -111,7 +116,7 @@ def _warn(where: str, error: str) -> None:
 def _drop_the_oldest(where: Path) -> None:
     """Keep the entries used last, up to `MOST_BYTES`; and no remains of processes that were killed."""
     entries = []
-    for path in where.iterdir():
+    for path in (*where.glob(f"*{SUFFIX}"), *where.glob("*.partial")):
         with contextlib.suppress(OSError):  # another process may have dropped it
             status = path.stat()
             entries.append((status.st_mtime, status.st_size, path))

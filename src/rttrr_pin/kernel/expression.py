@@ -12,6 +12,7 @@ sums as far as they go, and the two sides of + and - stand in the order of their
 from __future__ import annotations
 
 import enum
+import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias
@@ -154,6 +155,8 @@ class Graph:
 
     def function(self, op: Op, x: int) -> int:
         """Sine, cosine or sign; odd and even ones lose the sign of their argument."""
+        if self.op[x] is Op.CONSTANT:
+            return self.constant(FUNCTIONS[op](self.value[x]))
         if self.op[x] is Op.NEG:
             inner = self.function(op, self.args[x][0])
             return inner if op is Op.COS else self.neg(inner)
@@ -175,6 +178,13 @@ class Graph:
                     waiting.extend(self.args[x])
         return sorted(seen)
 
+
+FUNCTIONS: dict[Op, Callable[[float], float]] = {
+    Op.SIN: math.sin,
+    Op.COS: math.cos,
+    Op.SIGN: lambda x: float((x > 0.0) - (x < 0.0)),
+}
+"""Each function of a number."""
 
 BUILD: dict[Op, Callable[..., int]] = {
     Op.ADD: Graph.add,

@@ -120,6 +120,7 @@ class Kernel:
         one = self._one
         if one is not None and payload is None and threads is None and one(q, v, a, out):
             return out
+        _check_threads(threads)
         variant_loads = self._loads(payload)
         arrays = self._arrays(q, v, a)
         loads = {f"payload_{k}_{name}": getattr(load, name) for k, load in enumerate(variant_loads) for name in "fn"}
@@ -152,7 +153,8 @@ class Kernel:
             if x is not None:
                 arrays[name] = x if _readable(x, self._width(name)) else coordinates(name, x, self.model.moving)
         if self._floats and "q" in arrays:
-            check_quaternions(np.asarray(arrays["q"], dtype=np.float64), self.model.moving)
+            q = finite("q", np.asarray(arrays["q"], dtype=np.float64), _labels("q", self.model.moving))
+            check_quaternions(q, self.model.moving)
         return arrays
 
     def _width(self, name: str) -> int:
@@ -196,6 +198,9 @@ class Kernel:
             target = None if mine is None or elsewhere else _view(mine, rows, field.width)
             if target is None:
                 target = np.empty((rows, field.width))
+            for name in [name for name in given if mine is not None and name != field.name]:
+                if isinstance(given[name], np.ndarray) and np.shares_memory(mine, given[name]):
+                    raise InputError(f"out for {field.name} and {name} share memory: pass an array of its own for each")
             targets.append(target)
             results.append(target.reshape(shape) if mine is None else mine)
         return targets, results
@@ -285,6 +290,11 @@ def _labels(name: str, joints: Sequence[Joint]) -> list[str]:
     return [label for joint in joints for label in (joint.q_labels() if name == "q" else joint.v_labels())]
 
 
+def _check_threads(wanted: int | None) -> None:
+    """Also where nothing is to be computed."""
+    threads.count(wanted, 0)
+
+
 def _readable(x: Any, width: int) -> bool:
     """Whether compiled code can read an array where it lies; all else is checked, and copied if need be."""
     if type(x) is not np.ndarray or x.dtype not in (np.float64, np.float32) or not x.flags.aligned:
@@ -322,6 +332,7 @@ def _view(x: Array, rows: int, width: int) -> Array | None:
 def _check_out(name: str, x: Any, shape: tuple[int, ...]) -> None:
     if not isinstance(x, np.ndarray) or x.dtype != np.float64 or not x.flags.aligned or not x.dtype.isnative:
         kind = f"array of {x.dtype}" if isinstance(x, np.ndarray) else type(x).__name__
+        kind = f"misaligned {kind}" if isinstance(x, np.ndarray) and not x.flags.aligned else kind
         raise InputError(f"out for {name} is a {kind}: expected a float64 array, such as np.empty({shape})")
     if x.shape != shape:
         raise ShapeError(

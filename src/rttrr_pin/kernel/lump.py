@@ -75,12 +75,12 @@ def lump(model: Model) -> Model:
     links = list(model.links)
     for i in reversed(range(len(links))):
         joint = model.joints[i]
-        moved = _movable(joint, links[i])
+        carrier = links[joint.parent] if joint.parent >= 0 else None
+        moved = _movable(joint, links[i], carrier)
         if moved is None:
             continue
         links[i] = _without(links[i], moved, joint)
-        if joint.parent >= 0:
-            carrier = links[joint.parent]
+        if carrier is not None:
             links[joint.parent] = (Inertia.of(carrier) + moved.seen_from(joint.R, joint.p)).as_link(carrier)
     return replace(model, links=tuple(links))
 
@@ -104,15 +104,21 @@ def _carried_by_moving_links(model: Model) -> Model:
     return replace(model, joints=tuple(joints), links=tuple(links))
 
 
-def _movable(joint: Joint, link: Link) -> Inertia | None:
-    """What of a link's inertia may belong to its carrier."""
+LIGHT = 1 / 16
+"""A carrier with less than this of the link's mass keeps its first moment: divided by so small a mass, another's would
+put its centre of mass far away, where its tensor drowns; without mass it has none."""
+
+
+def _movable(joint: Joint, link: Link, carrier: Link | None) -> Inertia | None:
+    """What of a link's inertia may belong to its carrier; None for the root, which keeps nothing."""
     if joint.type is JointType.PRISMATIC:
         return Inertia(0.0, np.zeros(3), link.inertia)
     if not joint.type.rotates or link.mass == 0.0:
         return None
     u = joint.axis
-    along = float(u @ link.com) * link.mass * u
     on_axis = not (link.com - float(u @ link.com) * u).any()
+    heavy = carrier is None or on_axis or carrier.mass >= LIGHT * link.mass
+    along = float(u @ link.com) * link.mass * u if heavy else np.zeros(3)
     centred = Inertia.of(link) - Inertia(0.0, along, np.zeros((3, 3)))
     k = int(np.argmin(np.abs(u)))  # the entry to become zero
     tensor = centred.J if on_axis else _about_com(centred)
@@ -134,7 +140,7 @@ def _without(link: Link, moved: Inertia, joint: Joint) -> Link:
     k = int(np.argmin(np.abs(joint.axis)))
     inertia, com = rest.inertia.copy(), rest.com.copy()
     inertia[k, k] = 0.0
-    if np.count_nonzero(joint.axis) == 1:
+    if moved.h.any() and np.count_nonzero(joint.axis) == 1:
         com[np.argmax(np.abs(joint.axis))] = 0.0
     return replace(rest, inertia=inertia, com=com)
 

@@ -118,18 +118,18 @@ def _derivatives(by: str) -> Quantity:
         n = motion.model.nv
         moved = {name: getattr(motion, name) for name in "qva"}
         seed = _tangent if by == "q" else _plain
-        moved[by] = seed(motion.model.moving, moved[by])
+        moved[by] = seed(motion.model.moving, moved[by], motion.arithmetic)
         tau = dynamics(motion.model, _dual(motion.arithmetic), **moved, payloads=motion.payloads).tau
         return [part_of(row, k) for row in tau for k in range(n)]
 
     return Quantity("qva", lambda model: (model.nv, model.nv), scalars, payload=True)
 
 
-def _plain(joints: Sequence[Joint], x: Sequence[Scalar]) -> list[Dual]:
+def _plain(joints: Sequence[Joint], x: Sequence[Scalar], arithmetic: Arithmetic) -> list[Dual]:
     return [Dual(value, {k: 1.0}) for k, value in enumerate(x)]
 
 
-def _tangent(joints: Sequence[Joint], q: Sequence[Scalar]) -> list[Dual]:
+def _tangent(joints: Sequence[Joint], q: Sequence[Scalar], arithmetic: Arithmetic) -> list[Dual]:
     """Coordinates that move as the rates say: those of planar and floating joints are turned into the joint's frame."""
     duals: list[Dual] = []
     at, k = 0, 0
@@ -137,10 +137,19 @@ def _tangent(joints: Sequence[Joint], q: Sequence[Scalar]) -> list[Dual]:
         own = q[at : at + joint.nq]
         if joint.type is JointType.FLOATING:
             duals += _floating_tangent(own, k)
+        elif joint.type is JointType.PLANAR:
+            duals += _planar_tangent(own, k, arithmetic)
         else:
             duals += [Dual(x, {k + i: 1.0}) for i, x in enumerate(own)]
         at, k = at + joint.nq, k + joint.nv
     return duals
+
+
+def _planar_tangent(own: Sequence[Scalar], k: int, arithmetic: Arithmetic) -> list[Dual]:
+    """With x' = c v_x - s v_y, y' = s v_x + c v_y and theta' = w_z for directions k to k + 2."""
+    x, y, theta = own
+    s, c = arithmetic.sincos(theta)
+    return [Dual(x, {k: c, k + 1: -s}), Dual(y, {k: s, k + 1: c}), Dual(theta, {k + 2: 1.0})]
 
 
 def _floating_tangent(own: Sequence[Scalar], k: int) -> list[Dual]:

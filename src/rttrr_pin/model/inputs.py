@@ -164,7 +164,8 @@ def check_quaternions(q: Array, joints: Sequence[Joint]) -> None:
         at += joint.nq
         if joint.type is not JointType.FLOATING:
             continue
-        squares = (q[..., at - 4 : at] ** 2).sum(axis=-1)
+        with np.errstate(over="ignore"):
+            squares = (q[..., at - 4 : at] ** 2).sum(axis=-1)
         bad = np.argwhere(np.abs(squares - 1.0) > UNIT_QUATERNION)
         if len(bad):
             index = tuple(int(k) for k in bad[0])

@@ -68,7 +68,9 @@ class LlvmEmitter:
         _initialised()
         self.processor, self.features = _processor()
         version = ".".join(map(str, llvm.llvm_version_info))
-        self.identity = f"llvm {version} llvmlite {llvmlite.__version__} {self.processor} {self.features}"
+        self.identity = (
+            f"llvm {version} {llvmlite.__version__} {llvm.get_process_triple()} {self.processor} {self.features}"
+        )
 
     def _machine(self) -> llvm.TargetMachine:
         target = llvm.Target.from_default_triple()

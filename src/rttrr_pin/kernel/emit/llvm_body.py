@@ -236,13 +236,14 @@ class _Writer:
         self.value[x] = name
 
     def _sign(self, x: str) -> str:
-        """-1, 0, 1, or NaN of NaN."""
+        """-1, 0 or 1; NaN of what is not finite, which must not go unseen."""
         lines = self.lines
         v, mask = lines.vector, f"<{lines.lanes} x i1>"
         above = lines(f"fcmp ogt {v} {x}, {lines.splat(0.0)}")
         below = lines(f"fcmp olt {v} {x}, {lines.splat(0.0)}")
-        negative = lines(f"select {mask} {below}, {v} {lines.splat(-1.0)}, {v} {lines.op('fmul', x, lines.splat(0.0))}")
-        return lines(f"select {mask} {above}, {v} {lines.splat(1.0)}, {v} {negative}")
+        negative = lines(f"select {mask} {below}, {v} {lines.splat(-1.0)}, {v} {lines.splat(0.0)}")
+        sign = lines(f"select {mask} {above}, {v} {lines.splat(1.0)}, {v} {negative}")
+        return lines.op("fadd", sign, lines.op("fmul", x, lines.splat(0.0)))
 
     def _sincos(self, q: str) -> tuple[str, str]:
         """Sine and cosine, by the polynomials; angles beyond their range are done over by the C library."""

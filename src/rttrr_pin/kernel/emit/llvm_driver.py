@@ -10,8 +10,9 @@ state goes through the same instructions: its bits do not depend on its neighbou
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations, product
 
 from llvmlite import ir
 
@@ -260,17 +261,22 @@ def _understood(
 
 
 def _require_apart(w: Writer, block: _Block, arrays: Sequence[Array], m: ir.Value, refuse: ir.Block) -> None:
-    """No output may lie over an input that a later block reads; within one block all is read before it is written."""
+    """Outputs lie apart, and none over an input that a later block reads; within one block all is read before."""
     b, count = w.builder, len(block.program.inputs)
     ends = [b.ptrtoint(w.offset(array.base, b.mul(m, array.row)), I64) for array in arrays]
     starts = [b.ptrtoint(array.base, I64) for array in arrays]
-    apart = b.icmp_signed("<=", m, number(block.layout.block))
-    clear: ir.Value = ir.Constant(I1, 1)
-    for k in range(count, len(arrays)):
-        for i in range(count):
+
+    def apart(pairs: Iterable[tuple[int, int]]) -> ir.Value:
+        clear: ir.Value = ir.Constant(I1, 1)
+        for k, i in pairs:
             before, behind = (b.icmp_unsigned("<=", *pair) for pair in ((ends[k], starts[i]), (ends[i], starts[k])))
             clear = b.and_(clear, b.or_(before, behind))
-    _require(b, b.or_(apart, clear), refuse)
+        return clear
+
+    outputs = range(count, len(arrays))
+    _require(b, apart(combinations(outputs, 2)), refuse)
+    in_one_block = b.icmp_signed("<=", m, number(block.layout.block))
+    _require(b, b.or_(in_one_block, apart(product(range(count), outputs))), refuse)
 
 
 def _require(b: ir.IRBuilder, condition: ir.Value, otherwise: ir.Block) -> None:
