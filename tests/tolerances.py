@@ -27,6 +27,15 @@ CONSUMER = 1e-9
 """What another program made of a file's masses and inertias: MuJoCo stops diagonalising at 4e-12, and what it or Drake
 alters, it alters by a percent or more."""
 
+SINCOS_ULPS = 1.0
+"""Sine and cosine of compiled code against the true value, in units in the last place of it, as the docstring of
+`kernel.sincos` promises (measured at random angles: 0.87; of the C library beyond the polynomials, 0.55). Here ULPs
+are a measure: one function of one exact argument, in which nothing cancels."""
+
+DIFFERENCES = 1e-6
+"""Central differences with steps of 6e-6, the cube root of eps: good to 6e-11 (measured), a wrong term is off by a
+percent or more. A check of sanity, apart from Pinocchio; the exact comparison is with that."""
+
 EXACT = 0.0
 """The same operations in the same order: the same bits."""
 
