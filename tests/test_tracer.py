@@ -159,17 +159,6 @@ def mirror(expression: Expression) -> Expression:
     return (kind, *(reversed(parts) if kind in "+*" else parts))
 
 
-@given(expressions(st.floats(-10, 10), functions=True), st.lists(FLOATS, min_size=INPUTS, max_size=INPUTS))
-def test_a_program_made_anew_is_the_same(expression: Expression, x: list[float]) -> None:
-    graph, number = recorded(expression)
-    program = Program(graph, (), (), (number,))
-    again = program.rebuilt(lambda new, op, args: new.apply(op, args))
-    assert again.operations == program.operations
-    with np.errstate(over="ignore", invalid="ignore"):
-        arrays = [np.array([value]) for value in x]
-        np.testing.assert_array_equal(again.evaluate(arrays)[0], program.evaluate(arrays)[0])
-
-
 def test_folding_by_example() -> None:
     graph = Graph()
     x, y = (Node(graph, graph.input(k)) for k in range(2))
