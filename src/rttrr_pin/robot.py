@@ -128,7 +128,8 @@ class Robot:
             outputs: what to compute, one name or several: `"tau"`, `"F"`, `"N"`, `"f"`, `"n"`, `"tau_joint"`,
                 `"mass_matrix"`, `"nonlinear_effects"`, `"gravity_torque"`, `"regressor"`, `"dtau_dq"`, `"dtau_dv"`,
                 `"dtau_da"`. The fewer, the faster.
-            emitter: `"llvm"` (machine code) or `"numpy"` (wherever NumPy runs); None for what is there.
+            emitter: `"llvm"` (machine code), `"numba"`, `"numpy"` (wherever NumPy runs) or `"c"` (by the C compiler);
+                None for what is there.
 
         Returns:
             A kernel, `kernel(q, v, a, payload=None, out=None, threads=None)`.

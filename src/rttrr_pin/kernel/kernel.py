@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from rttrr_pin.arithmetic import Load
 from rttrr_pin.errors import InputError, NumberError, ShapeError, UnknownNameError
-from rttrr_pin.kernel import cache, threads
+from rttrr_pin.kernel import cache, emit, threads
 from rttrr_pin.kernel.emit import Emitter, Executable, emitter
 from rttrr_pin.kernel.program import Field, Program
 from rttrr_pin.kernel.quantities import QUANTITIES
@@ -84,6 +84,22 @@ class Kernel:
     def program(self) -> Program:
         """The straight-line program (without payload), with the count of its operations."""
         return simplify(trace(self.model, self.outputs))
+
+    def source(self, emitter: str = "c") -> str:
+        """The program (without payload) as a source file, to carry the dynamics elsewhere.
+
+        Args:
+            emitter: "c", for a C99 file with the function `void ROBOT_OUTPUT(const double *q, ..., double *output)`.
+
+        Returns:
+            The file's text; a comment on top says what goes in and out.
+
+        Raises:
+            UnknownNameError: there is no such emitter.
+            InputError: it writes no source.
+        """
+        labels = {name: _labels(name, self.model.moving) for name in self._inputs}
+        return emit.source(emitter, self.program, self.model.name, labels)
 
     def __call__(
         self,

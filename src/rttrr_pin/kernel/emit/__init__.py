@@ -1,12 +1,12 @@
 """From a program to something that runs: one module for each way, one line for each in the registry.
 
-An emitter turns a program into bytes that may be kept on disk, and such bytes into an executable. A new one (CUDA, C)
+An emitter turns a program into bytes that may be kept on disk, and such bytes into an executable. A new one (CUDA)
 is one new file and one line here.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from importlib import import_module
 from typing import Any, Protocol
 
@@ -58,7 +58,7 @@ class Emitter(Protocol):
         ...
 
 
-EMITTERS = ("llvm", "numpy")
+EMITTERS = ("llvm", "numba", "numpy", "c")
 """By preference; the module of the same name here has a function `emitter()`."""
 
 
@@ -77,6 +77,20 @@ def emitter(name: str | None = None) -> Emitter:
     if found is None:
         raise InputError(f"emitter {name!r} cannot be imported: pip install rttrr-pin again, or take emitter='numpy'")
     return found
+
+
+def source(name: str, program: Program, robot: str, labels: Mapping[str, Sequence[str]]) -> str:
+    """A program as text for readers and other programs, from an emitter that has a function `source` as well.
+
+    Raises:
+        UnknownNameError: there is no emitter of that name.
+        InputError: it writes none.
+    """
+    write = getattr(emitter(name), "source", None)
+    if write is None:
+        raise InputError(f"emitter {name!r} writes no source for readers: take emitter='c'")
+    text: str = write(program, robot, labels)
+    return text
 
 
 def _importable(name: str) -> Emitter | None:
