@@ -74,5 +74,5 @@ def test_a_product_of_one_sum_is_fused() -> None:
     product = graph.mul(x, y)
     once = Program(graph, (), (), (graph.add(product, x),))
     assert (once.operations.total, fused(once)) == (2, 1)
-    twice = Program(graph, (), (), (graph.add(product, x), graph.sub(product, y)))
+    twice = Program(graph, (), (), (graph.add(product, x), graph.sub(y, product)))
     assert (twice.operations.total, fused(twice)) == (3, 3)

@@ -86,18 +86,18 @@ class LlvmEmitter:
         return Layout(w, block, block + w)
 
     def assembly(self, program: Program) -> llvm.ModuleRef:
-        """The program as LLVM's assembly, optimised."""
+        """The program as LLVM's assembly."""
         from rttrr_pin.kernel.emit.llvm_driver import driver  # llvmlite's builder, not needed for what is on disk
 
         layout = self.layout(program)
         text, between = body(program, layout)
         module = llvm.parse_assembly(driver(program, layout, between))
-        module.link_in(llvm.parse_assembly(text))
-        module.verify()
         options = llvm.create_pipeline_tuning_options(speed_level=OPTIMISATION)
         options.loop_vectorization = options.slp_vectorization = options.loop_unrolling = False
         builder = llvm.create_pass_builder(self._machine(), options)
         builder.getModulePassManager().run(module, builder)
+        module.link_in(llvm.parse_assembly(text))  # straight lines: there is nothing to be found in them
+        module.verify()
         return module
 
     def emit(self, program: Program) -> bytes:

@@ -114,7 +114,22 @@ def body(program: Program, layout: Layout) -> tuple[str, int]:
     arguments = "ptr %in, ptr %out, ptr %between, i64 %m"
     calls = "\n".join(f"  call void @segment_{k}({arguments})" for k in range(len(parts)))
     whole = f"define void @body({arguments}) noinline {{\n{calls}\n  ret void\n}}\n"
-    return "\n".join([*_declarations(layout.lanes), *texts, whole]), len(passed)
+    return "\n".join([*_declarations(layout.lanes), *texts, whole, *_fill(program, layout)]), len(passed)
+
+
+def _fill(program: Program, layout: Layout) -> Iterator[str]:
+    """The function `void fill(ptr out, i64 m)`: what no state changes, written once for all blocks."""
+    graph, lines = program.graph, Lines(layout.lanes)
+    still = [(place, x) for place, x in enumerate(program.results) if graph.op[x] is Op.CONSTANT]
+    parts = [still[start : start + SEGMENT] for start in range(0, len(still), SEGMENT)]
+    for k, part in enumerate(parts):
+        lines = Lines(layout.lanes)
+        for place, x in part:
+            value = lines.splat(graph.value[x])
+            lines.do(f"store {lines.vector} {value}, ptr {lines.at('%o', place * layout.pitch)}")
+        yield _loop(f"fill_{k}", lines, "loop")
+    calls = "\n".join(f"  call void @fill_{k}(ptr %out, ptr %out, ptr %out, i64 %m)" for k in range(len(parts)))
+    yield f"define void @fill(ptr %out, i64 %m) noinline {{\n{calls}\n  ret void\n}}\n"
 
 
 def _declarations(lanes: int) -> Iterator[str]:
@@ -172,20 +187,25 @@ def _segment(program: Program, layout: Layout, k: int, part: list[int], passed: 
     inside = set(part)
     first = k == 0
     for place, x in results:
-        if x in inside or (first and program.graph.op[x] in (Op.CONSTANT, Op.INPUT)):
+        if x in inside or (first and program.graph.op[x] is Op.INPUT):
             lines.do(f"store {lines.vector} {writer.get(x)}, ptr {lines.at('%o', place * layout.pitch)}")
+    return _loop(f"segment_{k}", lines, writer.label)
+
+
+def _loop(name: str, lines: Lines, last: str) -> str:
+    """A function that does the lines for m states, so many at a time; the label of their last block."""
     arguments = "ptr noalias %in, ptr noalias %out, ptr noalias %between, i64 %m"
     text = "\n".join(lines.text)
-    return f"""define internal void @segment_{k}({arguments}) noinline {{
+    return f"""define internal void @{name}({arguments}) noinline {{
 start:
   br label %loop
 loop:
-  %i = phi i64 [ 0, %start ], [ %next, %{writer.label} ]
+  %i = phi i64 [ 0, %start ], [ %next, %{last} ]
   %q = getelementptr double, ptr %in, i64 %i
   %o = getelementptr double, ptr %out, i64 %i
   %b = getelementptr double, ptr %between, i64 %i
 {text}
-  %next = add i64 %i, {layout.lanes}
+  %next = add i64 %i, {lines.lanes}
   %more = icmp ult i64 %next, %m
   br i1 %more, label %loop, label %done
 done:

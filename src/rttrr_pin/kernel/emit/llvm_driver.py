@@ -63,6 +63,7 @@ def driver(program: Program, layout: Layout, between: int) -> str:
         layout=layout,
         between=between,
         body=ir.Function(module, ir.FunctionType(ir.VoidType(), [PTR, PTR, PTR, I64]), "body"),
+        fill=ir.Function(module, ir.FunctionType(ir.VoidType(), [PTR, I64]), "fill"),
         pack={kind: pack(module, layout, kind) for kind in (F64, F32)},
         unpack=unpack(module, layout),
         unsound=unsound(module, layout),
@@ -98,6 +99,7 @@ class _Block:
         layout: how the block lies in memory.
         between: columns that the program's parts pass on.
         body: the program.
+        fill: writes the outputs that no state changes.
         pack: gathers states into columns, by the kind of number that the array has.
         unpack: the reverse.
         unsound: tells whether there is NaN or infinity in columns.
@@ -107,6 +109,7 @@ class _Block:
     layout: Layout
     between: int
     body: ir.Function
+    fill: ir.Function
     pack: dict[ir.Type, ir.Function]
     unpack: ir.Function
     unsound: ir.Function
@@ -122,7 +125,7 @@ class _Block:
         count = len(self.program.inputs)
         for array, field, at in self._placed(w, arrays[:count], self.program.inputs, inputs):
             self._gather(w, array, [array.base, array.row, array.column, number(field.width), at, m])
-        padded = b.and_(b.add(m, number(self.layout.lanes - 1)), number(-self.layout.lanes))
+        padded = self.padded(b, m)
         b.call(self.body, [inputs, outputs, between, padded])
         bad = b.call(self.unsound, [outputs, number(_columns(self.program.outputs)), padded])
         for place in _unread(self.program):
@@ -131,6 +134,10 @@ class _Block:
         for array, field, at in self._placed(w, arrays[count:], self.program.outputs, outputs):
             b.call(self.unpack, [array.base, array.row, array.column, number(field.width), at, m])
         return bad
+
+    def padded(self, b: ir.IRBuilder, m: ir.Value) -> ir.Value:
+        """So many states that vectors are full."""
+        return b.and_(b.add(m, number(self.layout.lanes - 1)), number(-self.layout.lanes))
 
     def _gather(self, w: Writer, array: Array, arguments: list[ir.Value]) -> None:
         if array.single is None:
@@ -180,6 +187,7 @@ def _blocks(w: Writer, block: _Block, arrays: Sequence[Array], start: ir.Value, 
     b, scratch = w.builder, block.scratch(w)
     bad = w.memory(I64)
     w.store(number(0), bad)
+    b.call(block.fill, [scratch[1], block.padded(b, w.least(number(block.layout.block), b.sub(stop, start)))])
     with w.loop(stop, block.layout.block, start) as first:
         m = w.least(number(block.layout.block), b.sub(stop, first))
         here = [replace(array, base=w.offset(array.base, b.mul(first, array.row))) for array in arrays]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -59,7 +60,7 @@ class NumpyEmitter:
 
     def load(self, code: bytes, inputs: Sequence[Field], outputs: Sequence[Field]) -> NumpyExecutable:
         """Make the function."""
-        space: dict[str, Callable[..., Columns]] = {"sin": np.sin, "cos": np.cos, "sign": np.sign}
+        space: dict[str, Any] = {"sin": np.sin, "cos": np.cos, "sign": np.sign, "inf": np.inf, "nan": np.nan}
         exec(compile(code, "<program>", "exec"), space)
         return NumpyExecutable(space["program"])
 
