@@ -185,7 +185,7 @@ def test_bad_outputs(rttrr: Robot, case: str) -> None:
 
 
 def test_unknown_emitter(rttrr: Robot) -> None:
-    with pytest.raises(UnknownNameError, match=r"no emitter is called 'cuda': .*llvm, numpy"):
+    with pytest.raises(UnknownNameError, match=r"no emitter is called 'cuda': .*llvm, numba, numpy, c"):
         rttrr.compile("tau", emitter="cuda")
 
 
