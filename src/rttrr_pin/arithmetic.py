@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from rttrr_pin.algebra import Matrix, Scalar, Vector
 from rttrr_pin.joint_motion import Body, JointState, SinCos
-from rttrr_pin.model import Joint, Link, Mimic, Model
-from rttrr_pin.newton_euler import Payload, newton_euler
+from rttrr_pin.model import Drive, Joint, Link, Mimic, Model
+from rttrr_pin.newton_euler import Call, Keep, Payload, newton_euler
 
 Array = NDArray[np.float64]
 
@@ -45,13 +45,15 @@ class Arithmetic:
         sincos: sine and cosine of such a column.
         sign: -1, 0 or 1 by the sign of a scalar's value.
         keep: what stands for a finished w, w_dot, v_dot, F, N, f or n.
+        call: takes a step of the recursion.
     """
 
     number: Callable[[float, float], Scalar]
     column: Callable[[float | Array], Scalar]
     sincos: SinCos
     sign: Callable[[Scalar], Scalar]
-    keep: Callable[[Vector], Vector] = lambda x: x
+    keep: Keep = lambda x: x
+    call: Call = lambda step, *arguments: step(*arguments)
 
 
 def _float_sincos(q: float | Array) -> tuple[float | Array, float | Array]:
@@ -158,10 +160,10 @@ def dynamics(
     """
     states = _joint_states(model, arithmetic, q, v, a)
     gravity = Vector.of(model.gravity, lambda value: arithmetic.number(value, 0.0))
-    result = newton_euler(
-        links or bodies(model, arithmetic), states, gravity, payloads, arithmetic.sincos, arithmetic.keep
-    )
-    own = [_drive(joint, state, arithmetic) for joint, state in zip(model.joints, states, strict=True)]
+    parents = [joint.parent for joint in model.joints]
+    sincos, keep, call = arithmetic.sincos, arithmetic.keep, arithmetic.call
+    result = newton_euler(links or bodies(model, arithmetic), parents, states, gravity, payloads, sincos, keep, call)
+    own = [call(_drive, joint.drive, state, arithmetic) for joint, state in zip(model.joints, states, strict=True)]
     across, tau_joint = (_generalised(model, arithmetic, forces) for forces in (result.tau, own))
     tau = [x + y for x, y in zip(across, tau_joint, strict=True)]
     return Result(tau, tau_joint, result.F, result.N, result.f, result.n)
@@ -191,9 +193,8 @@ def _following(mimic: Mimic, master: JointState, arithmetic: Arithmetic) -> Join
     return JointState([q * multiplier + offset], [v * multiplier], [a * multiplier])
 
 
-def _drive(joint: Joint, state: JointState, arithmetic: Arithmetic) -> list[Scalar]:
+def _drive(drive: Drive, state: JointState, arithmetic: Arithmetic) -> list[Scalar]:
     """Armature a + damping v + friction sign(v) for each degree of freedom; 0 where the joint has none of them."""
-    drive = joint.drive
     parts = []
     for v, a in zip(state.v, state.a, strict=True):
         force: Scalar = 0
@@ -232,7 +233,6 @@ def _body(joint: Joint, link: Link, arithmetic: Arithmetic) -> Body:
     normalised = AXIS_ERROR if np.count_nonzero(joint.axis) > 1 else 0.0
     turned_tensor = 8 * ROTATION_ERROR * float(np.linalg.norm(link.inertia)) if link.rotated else 0.0
     return Body(
-        parent=joint.parent,
         type=joint.type,
         axis=Vector.of(joint.axis, lambda value: arithmetic.number(value, normalised * abs(value))),
         R=Matrix.of(joint.R, number(turned)),
