@@ -35,6 +35,9 @@ AXIS_ERROR = 4 * UNIT_ROUNDOFF
 """Relative, of a component of an axis that was divided by its length."""
 
 
+NumberOf = Callable[[float, float], Scalar]
+
+
 @dataclass(frozen=True, slots=True)
 class Arithmetic:
     """How to compute with one kind of scalar.
@@ -48,7 +51,7 @@ class Arithmetic:
         call: takes a step of the recursion.
     """
 
-    number: Callable[[float, float], Scalar]
+    number: NumberOf
     column: Callable[[float | Array], Scalar]
     sincos: SinCos
     sign: Callable[[Scalar], Scalar]
@@ -90,10 +93,15 @@ class Load:
         return Load(self.link, f, n, self.in_base)
 
 
-@lru_cache(maxsize=32)
 def bodies(model: Model, arithmetic: Arithmetic) -> list[Body]:
-    """The links and joints of a model with their numbers as scalars; both are frozen, so the last few are kept."""
-    return [_body(*pair, arithmetic) for pair in zip(model.joints, model.links, strict=True)]
+    """The links and joints of a model with their numbers as scalars."""
+    return _bodies(model, arithmetic.number)
+
+
+@lru_cache(maxsize=32)
+def _bodies(model: Model, number: NumberOf) -> list[Body]:
+    """Models and bodies are frozen, so the last few are kept."""
+    return [_body(*pair, number) for pair in zip(model.joints, model.links, strict=True)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -222,11 +230,11 @@ def _generalised(model: Model, arithmetic: Arithmetic, forces: Sequence[Sequence
     return [force for i in model.independent for force in total[i]]
 
 
-def _body(joint: Joint, link: Link, arithmetic: Arithmetic) -> Body:
+def _body(joint: Joint, link: Link, number: NumberOf) -> Body:
     """One link with its joint."""
 
-    def number(error: float) -> Callable[[float], Scalar]:
-        return lambda value: arithmetic.number(value, error)
+    def within(error: float) -> Callable[[float], Scalar]:
+        return lambda value: number(value, error)
 
     # Rotation matrices from rpy, axes divided by their length and turned tensors are rounded; the rest is as written.
     turned = ROTATION_ERROR if joint.rotated else 0.0
@@ -234,12 +242,12 @@ def _body(joint: Joint, link: Link, arithmetic: Arithmetic) -> Body:
     turned_tensor = 8 * ROTATION_ERROR * float(np.linalg.norm(link.inertia)) if link.rotated else 0.0
     return Body(
         type=joint.type,
-        axis=Vector.of(joint.axis, lambda value: arithmetic.number(value, normalised * abs(value))),
-        R=Matrix.of(joint.R, number(turned)),
-        p=Vector.of(joint.p, number(0.0)),
-        M=arithmetic.number(link.mass, 0.0),
-        r_C=Vector.of(link.com, number(0.0)),
-        I=Matrix.of(link.inertia, number(turned_tensor)),
+        axis=Vector.of(joint.axis, lambda value: number(value, normalised * abs(value))),
+        R=Matrix.of(joint.R, within(turned)),
+        p=Vector.of(joint.p, within(0.0)),
+        M=number(link.mass, 0.0),
+        r_C=Vector.of(link.com, within(0.0)),
+        I=Matrix.of(link.inertia, within(turned_tensor)),
     )
 
 

@@ -1,0 +1,79 @@
+"""What is compiled for a robot: straight lines where they stay short, calls of steps where the robot is too large."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from rttrr_pin.errors import InputError
+from rttrr_pin.kernel.columns import arranged
+from rttrr_pin.kernel.expression import Graph, GraphFullError
+from rttrr_pin.kernel.program import Program
+from rttrr_pin.kernel.quantities import QUANTITIES
+from rttrr_pin.kernel.recorder import Recorder
+from rttrr_pin.kernel.schedule import Schedule
+from rttrr_pin.kernel.simplify import simplify
+from rttrr_pin.kernel.trace import TRACING, PayloadSlot, fields, outputs_of, record, trace
+from rttrr_pin.model import Model
+
+STRAIGHT_LINE = 20_000
+"""Operations of a straight-line program, beyond which it is made of calls: it would take seconds to compile."""
+
+NODES = 4
+"""Nodes that the tracer records for each operation that is left, at most: 1.8 in chains about any axes, more the more
+of a robot's numbers are zero. A robot that would exceed it is not traced further."""
+
+LONGEST = 4_000_000
+"""Nodes of what cannot be made of calls: beyond it, compiling takes more minutes and memory than anyone has."""
+
+
+def build(
+    model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot] = (), straight_line: int = STRAIGHT_LINE
+) -> Program | Schedule:
+    """The program of a robot, of the kind that suits its size.
+
+    Args:
+        model: the robot.
+        outputs: names from `QUANTITIES`.
+        payloads: where payloads act.
+        straight_line: operations beyond which it is made of calls.
+
+    Returns:
+        Straight lines or calls, simplified.
+
+    Raises:
+        InputError: the robot is too large for these outputs.
+    """
+    by_steps = all(QUANTITIES[name].by_steps for name in outputs)
+    try:
+        program = trace(model, outputs, payloads, most=straight_line * NODES if by_steps else LONGEST)
+    except GraphFullError:
+        if by_steps:
+            return schedule(model, outputs, payloads)
+        names = [name for name in outputs if not QUANTITIES[name].by_steps]
+        raise InputError(
+            f"{', '.join(names)} of robot {model.name!r} with {model.nv} degrees of freedom: the program has more than "
+            f"{LONGEST} nodes, expected fewer; take differences of tau, or a smaller part of the robot"
+        ) from None
+    program = simplify(program)
+    return schedule(model, outputs, payloads) if by_steps and program.operations.total > straight_line else program
+
+
+def schedule(
+    model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot] = (), lumped: bool = True
+) -> Schedule:
+    """A robot as calls, however large or small it is.
+
+    Args:
+        model: the robot.
+        outputs: names from `QUANTITIES`, of quantities with `by_steps`.
+        payloads: where payloads act.
+        lumped: whether inertia may be moved between links where that leaves the outputs as they are.
+
+    Returns:
+        Calls of steps, each step simplified.
+    """
+    recorder = Recorder(Graph())
+    arithmetic = replace(TRACING, call=recorder.call)
+    results = record(recorder.graph, arithmetic, model, outputs, payloads, lumped)
+    return arranged(recorder, results, fields(model, outputs, payloads), outputs_of(model, outputs))
