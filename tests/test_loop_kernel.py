@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+import threading
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -14,9 +15,12 @@ from chains import random_chain
 from rttrr_pin import LinkWrenches, Robot, Wrench
 from rttrr_pin.errors import InputError, NumberError
 from rttrr_pin.kernel import Kernel, build, cache
+from rttrr_pin.kernel.columns import arranged
 from rttrr_pin.kernel.emit import EMITTERS, llvm
-from rttrr_pin.kernel.program import Program
+from rttrr_pin.kernel.expression import Graph, Node
+from rttrr_pin.kernel.program import Field, Program
 from rttrr_pin.kernel.quantities import QUANTITIES
+from rttrr_pin.kernel.recorder import Recorder
 from rttrr_pin.kernel.schedule import Schedule
 from rttrr_pin.model import Drive
 from rttrr_pin.validate import Sampler
@@ -172,10 +176,17 @@ def test_the_same_bits_in_any_block_layout_or_thread(size: int, monkeypatch: pyt
             np.testing.assert_array_equal(x[k], one[name])
 
 
+MIXED = random_tree(8, 10)
+
+FLOATING = random_tree(8, 6, ("floating", "revolute"))
+"""Where the floating base is changes no force, where a floating joint is does."""
+
+
 @pytest.mark.parametrize("emitter", EMITTERS)
-def test_every_number_that_is_not_finite_is_named(emitter: str) -> None:
-    """Also of joints whose motion moves no link that has a mass, and of quaternions' joints."""
-    robot = rttrr_pin.load(random_tree(8, 10), friction=True)
+@pytest.mark.parametrize(("text", "base"), [(MIXED, "fixed"), (FLOATING, "floating")])
+def test_every_number_that_is_not_finite_is_named(text: str, base: str, emitter: str) -> None:
+    """Also of joints that move no link with a mass, and of coordinates that no output depends on."""
+    robot = rttrr_pin.load(text, base=base, friction=True)  # type: ignore[arg-type]
     kernel = forced(robot, "tau", emitter)
     s = states(robot, 0, 3)
     quaternion = {i for i, name in enumerate(robot.model.q_names) if ".q" in name}
@@ -187,6 +198,22 @@ def test_every_number_that_is_not_finite_is_named(emitter: str) -> None:
             given[name][2, column] = np.nan
             with pytest.raises(NumberError, match=f"^{name}"):
                 kernel(**given)
+
+
+def test_an_input_that_only_results_without_use_depend_on_is_unread() -> None:
+    """A step has all results that some call needs; another call may not need them all."""
+    recorder = Recorder(Graph())
+    a, b, c, d = (Node(recorder.graph, recorder.graph.input(place)) for place in range(4))
+
+    def step(x: Node, y: Node) -> tuple[Node, Node]:
+        return x + x, y * y
+
+    (first, second), (third, _) = recorder.call(step, a, b), recorder.call(step, c, d)
+    fields = (Field("x", (4,)),), (Field("y", (3,)),)
+    schedule = arranged(recorder, [x.number for x in (first, second, third)], *fields)
+    assert len(schedule.calls) == 2
+    assert schedule.unread == (3,)
+    assert schedule.evaluate([np.array(x) for x in (1.0, 2.0, 3.0, 4.0)]) == [2.0, 4.0, 6.0]
 
 
 def test_what_comes_from_disk_is_the_same(rttrr: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -201,8 +228,18 @@ def test_what_comes_from_disk_is_the_same(rttrr: Robot, monkeypatch: pytest.Monk
 
 
 def test_a_block_that_is_too_large_for_the_stack_is_allocated() -> None:
-    """One block of 600 joints takes more than half a megabyte."""
+    """One block of 600 joints takes a megabyte, the stack of a thread may be smaller."""
     robot = chain(600)
     s = states(robot, 0, 2)
-    tau = robot.compile("tau")(s.q, s.v, s.a)
+    kernel = robot.compile("tau")
+    tau = kernel(s.q, s.v, s.a)
     assert norm_error(tau, robot.inverse_dynamics(s.q, s.v, s.a).tau) <= ROUNDING
+    again = np.empty_like(tau)
+    before = threading.stack_size(256 * 1024)
+    try:
+        thread = threading.Thread(target=lambda: [kernel(s.q[k], s.v[k], s.a[k], out=again[k]) for k in range(2)])
+        thread.start()
+        thread.join()
+    finally:
+        threading.stack_size(before)
+    np.testing.assert_array_equal(again, tau)
