@@ -22,6 +22,7 @@ from rttrr_pin.kernel.program import Field, Program
 from rttrr_pin.kernel.quantities import QUANTITIES
 from rttrr_pin.kernel.recorder import Recorder
 from rttrr_pin.kernel.schedule import Schedule
+from rttrr_pin.kernel.trace import trace
 from rttrr_pin.model import Drive
 from rttrr_pin.validate import Sampler
 from rttrr_pin.validate.states import States
@@ -109,9 +110,7 @@ def test_a_long_chain_takes_calls_by_itself() -> None:
 
 def test_the_threshold_counts_operations() -> None:
     model = chain(12).model
-    program = build.build(model, ["tau"])
-    assert isinstance(program, Program)
-    count = program.operations.total
+    count = trace(model, ["tau"]).operations.total
     assert isinstance(build.build(model, ["tau"], straight_line=count), Program)
     assert isinstance(build.build(model, ["tau"], straight_line=count - 1), Schedule)
 

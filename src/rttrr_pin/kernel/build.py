@@ -17,11 +17,11 @@ from rttrr_pin.kernel.trace import TRACING, PayloadSlot, fields, outputs_of, rec
 from rttrr_pin.model import Model
 
 STRAIGHT_LINE = 20_000
-"""Operations of a straight-line program, beyond which it is made of calls: it would take seconds to compile."""
+"""Operations, as traced, beyond which a program is made of calls: straight lines would take seconds to compile."""
 
-NODES = 4
-"""Nodes that the tracer records for each operation that is left, at most: 1.8 in chains about any axes, more the more
-of a robot's numbers are zero. A robot that would exceed it is not traced further."""
+NODES = 3
+"""Nodes that the tracer records for each operation that an output needs, at most: 1.8 in chains about any axes, 2.9 in
+the RTTRR arm, most of whose numbers are zero. A robot with more is not traced to its end."""
 
 LONGEST = 4_000_000
 """Nodes of what cannot be made of calls: beyond it, compiling takes more minutes and memory than anyone has."""
@@ -36,7 +36,7 @@ def build(
         model: the robot.
         outputs: names from `QUANTITIES`.
         payloads: where payloads act.
-        straight_line: operations beyond which it is made of calls.
+        straight_line: operations, as traced, beyond which it is made of calls.
 
     Returns:
         Straight lines or calls, simplified.
@@ -55,8 +55,9 @@ def build(
             f"{', '.join(names)} of robot {model.name!r} with {model.nv} degrees of freedom: the program has more than "
             f"{LONGEST} nodes, expected fewer; take differences of tau, or a smaller part of the robot"
         ) from None
-    program = simplify(program)
-    return schedule(model, outputs, payloads) if by_steps and program.operations.total > straight_line else program
+    if by_steps and program.operations.total > straight_line:
+        return schedule(model, outputs, payloads)
+    return simplify(program)
 
 
 def schedule(
