@@ -16,7 +16,7 @@ from rttrr_pin import LinkWrenches, Robot, Wrench
 from rttrr_pin.errors import InputError, NumberError
 from rttrr_pin.kernel import Kernel, build, cache
 from rttrr_pin.kernel.columns import arranged
-from rttrr_pin.kernel.emit import EMITTERS, llvm
+from rttrr_pin.kernel.emit import EMITTERS, emitter, llvm
 from rttrr_pin.kernel.expression import Graph, Node
 from rttrr_pin.kernel.program import Field, Program
 from rttrr_pin.kernel.quantities import QUANTITIES
@@ -30,6 +30,8 @@ from tolerances import ROUNDING, norm_error
 from trees import random_tree
 
 FIVE = ("tau", "F", "N", "f", "n", "tau_joint")
+
+BY_CALLS = [name for name in EMITTERS if emitter(name).calls]
 
 OF_STEPS = tuple(name for name, quantity in QUANTITIES.items() if quantity.by_steps)
 
@@ -68,16 +70,16 @@ def assert_equal(ours: dict[str, np.ndarray], theirs: LinkWrenches) -> None:
             assert norm_error(one, other) <= ROUNDING, name
 
 
-@pytest.mark.parametrize("emitter", EMITTERS)
+@pytest.mark.parametrize("by", BY_CALLS)
 @pytest.mark.parametrize("base", ["fixed", "floating"])
 @pytest.mark.parametrize("seed", range(4))
-def test_trees_of_all_joints_followers_drives_and_payloads(seed: int, base: str, emitter: str) -> None:
+def test_trees_of_all_joints_followers_drives_and_payloads(seed: int, base: str, by: str) -> None:
     robot = rttrr_pin.load(random_tree(seed, 12), base=base, friction=True)  # type: ignore[arg-type]
     names = [joint.name for joint in robot.model.joints if joint.nv]
     robot = robot.with_drives({names[0]: Drive(armature=0.7), names[-1]: Drive(0.2, 0.3, 0.4)})
     s = states(robot, seed)
     for wrenches in (None, payload(robot)):
-        ours = forced(robot, FIVE, emitter)(s.q, s.v, s.a, payload=wrenches)
+        ours = forced(robot, FIVE, by)(s.q, s.v, s.a, payload=wrenches)
         assert_equal(ours, robot.inverse_dynamics(s.q, s.v, s.a, wrenches))
 
 
@@ -132,6 +134,16 @@ def test_what_is_no_sequence_of_steps_stays_straight_until_it_is_too_long(
         rttrr_pin.load("rttrr").compile(("tau", "regressor"))(np.zeros(5), np.zeros(5), np.zeros(5))
 
 
+def test_emitters_that_know_no_calls_get_straight_lines(rttrr: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+    assert set(BY_CALLS) == {"llvm", "numpy"}
+    monkeypatch.setattr(build, "schedule", None)
+    monkeypatch.setattr(type(emitter("numpy")), "calls", False)
+    s = states(rttrr, 0)
+    assert (
+        norm_error(forced(rttrr, "tau", "numpy")(s.q, s.v, s.a), rttrr.inverse_dynamics(s.q, s.v, s.a).tau) <= ROUNDING
+    )
+
+
 def test_code_does_not_grow_with_the_robot() -> None:
     """The table does, by as much for each joint."""
     schedules = [build.schedule(chain(joints).model, ["tau"]) for joints in (100, 200, 400)]
@@ -181,12 +193,12 @@ FLOATING = random_tree(8, 6, ("floating", "revolute"))
 """Where the floating base is changes no force, where a floating joint is does."""
 
 
-@pytest.mark.parametrize("emitter", EMITTERS)
+@pytest.mark.parametrize("by", BY_CALLS)
 @pytest.mark.parametrize(("text", "base"), [(MIXED, "fixed"), (FLOATING, "floating")])
-def test_every_number_that_is_not_finite_is_named(text: str, base: str, emitter: str) -> None:
+def test_every_number_that_is_not_finite_is_named(text: str, base: str, by: str) -> None:
     """Also of joints that move no link with a mass, and of coordinates that no output depends on."""
     robot = rttrr_pin.load(text, base=base, friction=True)  # type: ignore[arg-type]
-    kernel = forced(robot, "tau", emitter)
+    kernel = forced(robot, "tau", by)
     s = states(robot, 0, 3)
     quaternion = {i for i, name in enumerate(robot.model.q_names) if ".q" in name}
     for name in "qva":

@@ -28,7 +28,10 @@ LONGEST = 4_000_000
 
 
 def build(
-    model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot] = (), straight_line: int = STRAIGHT_LINE
+    model: Model,
+    outputs: Sequence[str],
+    payloads: Sequence[PayloadSlot] = (),
+    straight_line: int | None = STRAIGHT_LINE,
 ) -> Program | Schedule:
     """The program of a robot, of the kind that suits its size.
 
@@ -36,7 +39,7 @@ def build(
         model: the robot.
         outputs: names from `QUANTITIES`.
         payloads: where payloads act.
-        straight_line: operations, as traced, beyond which it is made of calls.
+        straight_line: operations, as traced, beyond which it is made of calls; None for never.
 
     Returns:
         Straight lines or calls, simplified.
@@ -44,20 +47,26 @@ def build(
     Raises:
         InputError: the robot is too large for these outputs.
     """
-    by_steps = all(QUANTITIES[name].by_steps for name in outputs)
+    if straight_line is None or not all(QUANTITIES[name].by_steps for name in outputs):
+        return simplify(_whole(model, outputs, payloads))
     try:
-        program = trace(model, outputs, payloads, most=straight_line * NODES if by_steps else LONGEST)
+        program = trace(model, outputs, payloads, most=straight_line * NODES)
     except GraphFullError:
-        if by_steps:
-            return schedule(model, outputs, payloads)
-        names = [name for name in outputs if not QUANTITIES[name].by_steps]
+        return schedule(model, outputs, payloads)
+    short = program.operations.total <= straight_line
+    return simplify(program) if short else schedule(model, outputs, payloads)
+
+
+def _whole(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot]) -> Program:
+    """Straight lines, however long, but no longer than can be compiled."""
+    try:
+        return trace(model, outputs, payloads, most=LONGEST)
+    except GraphFullError:
+        names = [name for name in outputs if not QUANTITIES[name].by_steps] or outputs
         raise InputError(
             f"{', '.join(names)} of robot {model.name!r} with {model.nv} degrees of freedom: the program has more than "
             f"{LONGEST} nodes, expected fewer; take differences of tau, or a smaller part of the robot"
         ) from None
-    if by_steps and program.operations.total > straight_line:
-        return schedule(model, outputs, payloads)
-    return simplify(program)
 
 
 def schedule(

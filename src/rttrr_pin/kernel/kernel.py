@@ -196,11 +196,12 @@ class Kernel:
         return found
 
     def _compiled(self, slots: tuple[PayloadSlot, ...]) -> Variant:
-        asked = repr((self.outputs, slots, self._straight_line))
+        straight_line = self._straight_line if self._emitter.calls else None
+        asked = repr((self.outputs, slots, straight_line))
         name = cache.key(self._emitter.identity, fingerprint(self.model), asked)
         code = cache.read(name)
         if code is None:
-            code = self._emitter.emit(build(self.model, self.outputs, slots, self._straight_line))
+            code = self._emitter.emit(build(self.model, self.outputs, slots, straight_line))
             cache.write(name, code)
         inputs, outputs = fields(self.model, self.outputs, slots), outputs_of(self.model, self.outputs)
         return Variant(inputs, outputs, self._emitter.load(code, inputs, outputs))
