@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 
 from rttrr_pin.algebra import Matrix, Scalar, Vector
 from rttrr_pin.joint_motion import Body, JointState, SinCos
-from rttrr_pin.model import Joint, Link, Mimic, Model
-from rttrr_pin.newton_euler import Payload, newton_euler
+from rttrr_pin.model import Drive, Joint, Link, Mimic, Model
+from rttrr_pin.newton_euler import Call, Keep, Payload, newton_euler
 
 Array = NDArray[np.float64]
 
@@ -35,6 +35,9 @@ AXIS_ERROR = 4 * UNIT_ROUNDOFF
 """Relative, of a component of an axis that was divided by its length."""
 
 
+NumberOf = Callable[[float, float], Scalar]
+
+
 @dataclass(frozen=True, slots=True)
 class Arithmetic:
     """How to compute with one kind of scalar.
@@ -45,13 +48,15 @@ class Arithmetic:
         sincos: sine and cosine of such a column.
         sign: -1, 0 or 1 by the sign of a scalar's value.
         keep: what stands for a finished w, w_dot, v_dot, F, N, f or n.
+        call: takes a step of the recursion.
     """
 
-    number: Callable[[float, float], Scalar]
+    number: NumberOf
     column: Callable[[float | Array], Scalar]
     sincos: SinCos
     sign: Callable[[Scalar], Scalar]
-    keep: Callable[[Vector], Vector] = lambda x: x
+    keep: Keep = lambda x: x
+    call: Call = lambda step, *arguments: step(*arguments)
 
 
 def _float_sincos(q: float | Array) -> tuple[float | Array, float | Array]:
@@ -88,10 +93,15 @@ class Load:
         return Load(self.link, f, n, self.in_base)
 
 
-@lru_cache(maxsize=32)
 def bodies(model: Model, arithmetic: Arithmetic) -> list[Body]:
-    """The links and joints of a model with their numbers as scalars; both are frozen, so the last few are kept."""
-    return [_body(*pair, arithmetic) for pair in zip(model.joints, model.links, strict=True)]
+    """The links and joints of a model with their numbers as scalars."""
+    return _bodies(model, arithmetic.number)
+
+
+@lru_cache(maxsize=32)
+def _bodies(model: Model, number: NumberOf) -> list[Body]:
+    """Models and bodies are frozen, so the last few are kept."""
+    return [_body(*pair, number) for pair in zip(model.joints, model.links, strict=True)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,10 +168,10 @@ def dynamics(
     """
     states = _joint_states(model, arithmetic, q, v, a)
     gravity = Vector.of(model.gravity, lambda value: arithmetic.number(value, 0.0))
-    result = newton_euler(
-        links or bodies(model, arithmetic), states, gravity, payloads, arithmetic.sincos, arithmetic.keep
-    )
-    own = [_drive(joint, state, arithmetic) for joint, state in zip(model.joints, states, strict=True)]
+    parents = [joint.parent for joint in model.joints]
+    sincos, keep, call = arithmetic.sincos, arithmetic.keep, arithmetic.call
+    result = newton_euler(links or bodies(model, arithmetic), parents, states, gravity, payloads, sincos, keep, call)
+    own = [call(_drive, joint.drive, state, arithmetic) for joint, state in zip(model.joints, states, strict=True)]
     across, tau_joint = (_generalised(model, arithmetic, forces) for forces in (result.tau, own))
     tau = [x + y for x, y in zip(across, tau_joint, strict=True)]
     return Result(tau, tau_joint, result.F, result.N, result.f, result.n)
@@ -191,9 +201,8 @@ def _following(mimic: Mimic, master: JointState, arithmetic: Arithmetic) -> Join
     return JointState([q * multiplier + offset], [v * multiplier], [a * multiplier])
 
 
-def _drive(joint: Joint, state: JointState, arithmetic: Arithmetic) -> list[Scalar]:
+def _drive(drive: Drive, state: JointState, arithmetic: Arithmetic) -> list[Scalar]:
     """Armature a + damping v + friction sign(v) for each degree of freedom; 0 where the joint has none of them."""
-    drive = joint.drive
     parts = []
     for v, a in zip(state.v, state.a, strict=True):
         force: Scalar = 0
@@ -221,25 +230,24 @@ def _generalised(model: Model, arithmetic: Arithmetic, forces: Sequence[Sequence
     return [force for i in model.independent for force in total[i]]
 
 
-def _body(joint: Joint, link: Link, arithmetic: Arithmetic) -> Body:
+def _body(joint: Joint, link: Link, number: NumberOf) -> Body:
     """One link with its joint."""
 
-    def number(error: float) -> Callable[[float], Scalar]:
-        return lambda value: arithmetic.number(value, error)
+    def within(error: float) -> Callable[[float], Scalar]:
+        return lambda value: number(value, error)
 
     # Rotation matrices from rpy, axes divided by their length and turned tensors are rounded; the rest is as written.
     turned = ROTATION_ERROR if joint.rotated else 0.0
     normalised = AXIS_ERROR if np.count_nonzero(joint.axis) > 1 else 0.0
     turned_tensor = 8 * ROTATION_ERROR * float(np.linalg.norm(link.inertia)) if link.rotated else 0.0
     return Body(
-        parent=joint.parent,
         type=joint.type,
-        axis=Vector.of(joint.axis, lambda value: arithmetic.number(value, normalised * abs(value))),
-        R=Matrix.of(joint.R, number(turned)),
-        p=Vector.of(joint.p, number(0.0)),
-        M=arithmetic.number(link.mass, 0.0),
-        r_C=Vector.of(link.com, number(0.0)),
-        I=Matrix.of(link.inertia, number(turned_tensor)),
+        axis=Vector.of(joint.axis, lambda value: number(value, normalised * abs(value))),
+        R=Matrix.of(joint.R, within(turned)),
+        p=Vector.of(joint.p, within(0.0)),
+        M=number(link.mass, 0.0),
+        r_C=Vector.of(link.com, within(0.0)),
+        I=Matrix.of(link.inertia, within(turned_tensor)),
     )
 
 

@@ -20,7 +20,6 @@ class Body:
     """Link i and the joint that carries it; the numbers are scalars of one kind.
 
     Attributes:
-        parent: index of the parent link, -1 for the root.
         type: how the joint moves.
         axis: unit vector of the joint, in {i}.
         R: R_parent_i at coordinate zero.
@@ -30,7 +29,6 @@ class Body:
         I: inertia tensor about the centre of mass, in {i} [kg m^2]; equations (3)-(7).
     """
 
-    parent: int
     type: JointType
     axis: Vector
     R: Matrix

@@ -37,6 +37,10 @@ class Op(enum.IntEnum):
 LEAVES = (Op.CONSTANT, Op.INPUT)
 
 
+class GraphFullError(Exception):
+    """A graph has as many nodes as it may have."""
+
+
 @dataclass(eq=False)
 class Graph:
     """Nodes by number; what a node needs stands before it.
@@ -46,12 +50,14 @@ class Graph:
         args: numbers of the nodes that it takes; of an input its place among the inputs.
         value: of a constant.
         kept: nodes that are a finished component of w, w_dot, v_dot, F, N, f or n.
+        most: nodes that it may have; None for any number.
     """
 
     op: list[Op] = field(default_factory=list)
     args: list[tuple[int, ...]] = field(default_factory=list)
     value: dict[int, float] = field(default_factory=dict)
     kept: set[int] = field(default_factory=set)
+    most: int | None = None
     _known: dict[tuple[object, ...], int] = field(default_factory=dict)
 
     def __len__(self) -> int:
@@ -65,6 +71,8 @@ class Graph:
             number = self._known[key] = len(self.op)
             self.op.append(op)
             self.args.append(args)
+            if self.most is not None and number >= self.most:
+                raise GraphFullError
         return number
 
     def constant(self, value: Number) -> int:

@@ -16,11 +16,12 @@ from numpy.typing import NDArray
 from rttrr_pin.arithmetic import Load
 from rttrr_pin.errors import InputError, NumberError, ShapeError, UnknownNameError
 from rttrr_pin.kernel import cache, emit, threads
+from rttrr_pin.kernel.build import STRAIGHT_LINE, build
 from rttrr_pin.kernel.emit import Emitter, Executable, emitter
 from rttrr_pin.kernel.program import Field, Program
 from rttrr_pin.kernel.quantities import QUANTITIES
 from rttrr_pin.kernel.simplify import simplify
-from rttrr_pin.kernel.trace import PayloadSlot, fields, trace
+from rttrr_pin.kernel.trace import PayloadSlot, fields, outputs_of, trace
 from rttrr_pin.model import Joint, Model
 from rttrr_pin.model.inputs import Coordinates, check_quaternions, coordinates, finite
 
@@ -59,7 +60,12 @@ class Kernel:
     """
 
     def __init__(
-        self, model: Model, outputs: str | Sequence[str], loads_of: LoadOf, emitter_name: str | None = None
+        self,
+        model: Model,
+        outputs: str | Sequence[str],
+        loads_of: LoadOf,
+        emitter_name: str | None = None,
+        straight_line: int = STRAIGHT_LINE,
     ) -> None:
         self.model = model
         self._single = isinstance(outputs, str)
@@ -70,6 +76,7 @@ class Kernel:
         if not self.outputs or len(set(self.outputs)) < len(self.outputs):
             raise InputError(f"outputs is {outputs!r}: name at least one, and each once, of {', '.join(QUANTITIES)}")
         self._loads_of = loads_of
+        self._straight_line = straight_line
         self._emitter: Emitter = emitter(emitter_name)
         self._variants: dict[tuple[PayloadSlot, ...], Variant] = {}
         self._lock = threading.Lock()
@@ -189,14 +196,14 @@ class Kernel:
         return found
 
     def _compiled(self, slots: tuple[PayloadSlot, ...]) -> Variant:
-        name = cache.key(self._emitter.identity, fingerprint(self.model), repr(self.outputs), repr(slots))
+        straight_line = self._straight_line if self._emitter.calls else None
+        asked = repr((self.outputs, slots, straight_line))
+        name = cache.key(self._emitter.identity, fingerprint(self.model), asked)
         code = cache.read(name)
         if code is None:
-            program = simplify(trace(self.model, self.outputs, slots))
-            code = self._emitter.emit(program)
+            code = self._emitter.emit(build(self.model, self.outputs, slots, straight_line))
             cache.write(name, code)
-        inputs = fields(self.model, self.outputs, slots)
-        outputs = tuple(Field(name, QUANTITIES[name].shape(self.model)) for name in self.outputs)
+        inputs, outputs = fields(self.model, self.outputs, slots), outputs_of(self.model, self.outputs)
         return Variant(inputs, outputs, self._emitter.load(code, inputs, outputs))
 
     def _targets(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -85,6 +85,17 @@ class Program:
         """The count of numbers that one state brings."""
         return sum(field.width for field in self.inputs)
 
+    @property
+    def width_out(self) -> int:
+        """The count of numbers that one state yields."""
+        return sum(field.width for field in self.outputs)
+
+    @cached_property
+    def unread(self) -> tuple[int, ...]:
+        """Places of inputs that no output depends on; what is not finite there would go unseen."""
+        read = set(inputs_of(self.graph, self.results))
+        return tuple(place for place in range(self.width_in) if place not in read)
+
     @cached_property
     def operations(self) -> Operations:
         """What one state costs."""
@@ -93,7 +104,7 @@ class Program:
         angles = {args[x][0] for x in self.order if op[x] in (Op.SIN, Op.COS)}
         return Operations(ops.count(Op.MUL), ops.count(Op.ADD) + ops.count(Op.SUB), ops.count(Op.NEG), len(angles))
 
-    def evaluate(self, columns: Sequence[Array]) -> list[Array | float]:
+    def evaluate(self, columns: Sequence[Array] | Mapping[int, Array | float]) -> list[Array | float]:
         """The outputs for columns of inputs, by NumPy: slow, and the reference for what compiles the program."""
         values: dict[int, Array | float] = {}
         for x in self.order:
@@ -105,6 +116,11 @@ class Program:
             else:
                 values[x] = NUMERIC[op](*(values[y] for y in args))
         return [values[x] for x in self.results]
+
+
+def inputs_of(graph: Graph, nodes: Iterable[int]) -> tuple[int, ...]:
+    """Places of the inputs that nodes depend on."""
+    return tuple(sorted(graph.args[x][0] for x in graph.reachable(nodes) if graph.op[x] is Op.INPUT))
 
 
 NUMERIC: dict[Op, Callable[..., Array]] = {

@@ -49,6 +49,7 @@ class Quantity:
         scalars: its numbers, the last axis fastest.
         payload: whether a payload enters.
         of_links: whether single links matter, so that no mass may be moved from one to another.
+        by_steps: whether it comes from scalars of one kind, so that the recursion's steps can be compiled once each.
     """
 
     inputs: str
@@ -56,6 +57,7 @@ class Quantity:
     scalars: Callable[[Motion], Sequence[Scalar]]
     payload: bool = False
     of_links: bool = False
+    by_steps: bool = True
 
 
 def _flat(vectors: Sequence[Vector]) -> list[Scalar]:
@@ -122,7 +124,7 @@ def _derivatives(by: str) -> Quantity:
         tau = dynamics(motion.model, _dual(motion.arithmetic), **moved, payloads=motion.payloads).tau
         return [part_of(row, k) for row in tau for k in range(n)]
 
-    return Quantity("qva", lambda model: (model.nv, model.nv), scalars, payload=True)
+    return Quantity("qva", lambda model: (model.nv, model.nv), scalars, payload=True, by_steps=False)
 
 
 def _plain(joints: Sequence[Joint], x: Sequence[Scalar], arithmetic: Arithmetic) -> list[Dual]:
@@ -197,7 +199,9 @@ QUANTITIES: dict[str, Quantity] = {
     "mass_matrix": Quantity("q", lambda model: (model.nv, model.nv), _mass_matrix),
     "nonlinear_effects": Quantity("qv", _per_joint, _nonlinear_effects),
     "gravity_torque": Quantity("q", _per_joint, _gravity_torque),
-    "regressor": Quantity("qva", lambda model: (model.nv, 10 * len(model.links)), _regressor, of_links=True),
+    "regressor": Quantity(
+        "qva", lambda model: (model.nv, 10 * len(model.links)), _regressor, of_links=True, by_steps=False
+    ),
     "dtau_dq": _derivatives("q"),
     "dtau_dv": _derivatives("v"),
     "dtau_da": _derivatives("a"),

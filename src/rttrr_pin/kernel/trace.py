@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from rttrr_pin.algebra import Scalar, Vector
@@ -29,7 +29,13 @@ class PayloadSlot:
     in_base: bool = False
 
 
-def trace(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot] = (), lumped: bool = True) -> Program:
+def trace(
+    model: Model,
+    outputs: Sequence[str],
+    payloads: Sequence[PayloadSlot] = (),
+    lumped: bool = True,
+    most: int | None = None,
+) -> Program:
     """The program of a robot.
 
     Args:
@@ -37,20 +43,49 @@ def trace(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot] 
         outputs: names from `QUANTITIES`.
         payloads: where payloads act.
         lumped: whether inertia may be moved between links where that leaves the outputs as they are.
+        most: nodes to record before giving up; None for any number.
 
     Returns:
         The program as the specification's operations leave it; `simplify` shortens it.
+
+    Raises:
+        GraphFullError: it takes more nodes.
+    """
+    graph = Graph(most=most)
+    results = record(graph, TRACING, model, outputs, payloads, lumped)
+    return Program(graph, fields(model, outputs, payloads), outputs_of(model, outputs), results)
+
+
+def record(
+    graph: Graph,
+    arithmetic: Arithmetic,
+    model: Model,
+    outputs: Sequence[str],
+    payloads: Sequence[PayloadSlot],
+    lumped: bool = True,
+) -> tuple[int, ...]:
+    """Run the specification on nodes of a graph, whose first inputs are the numbers of `fields`.
+
+    Args:
+        graph: where to record.
+        arithmetic: `TRACING`, or one made from it.
+        model: the robot.
+        outputs: names from `QUANTITIES`.
+        payloads: where payloads act.
+        lumped: as in `trace`.
+
+    Returns:
+        The nodes of the outputs' numbers.
     """
     wanted = [QUANTITIES[name] for name in outputs]
     if lumped and not any(quantity.of_links for quantity in wanted):
         model = lump(model)
     inputs = fields(model, outputs, payloads)
-    graph = Graph()
     columns = (Node(graph, graph.input(place)) for place in range(sum(field.width for field in inputs)))
     given = {field.name: [next(columns) for _ in range(field.width)] for field in inputs}
     motion = Motion(
         model,
-        _tracing(graph),
+        arithmetic,
         given.get("q", []),
         given.get("v", []),
         given.get("a", []),
@@ -59,13 +94,12 @@ def trace(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot] 
             for k, slot in enumerate(payloads)
         ],
     )
-    scalars = [scalar for quantity in wanted for scalar in quantity.scalars(motion)]
-    return Program(
-        graph,
-        inputs,
-        tuple(Field(name, quantity.shape(model)) for name, quantity in zip(outputs, wanted, strict=True)),
-        tuple(_number(graph, scalar) for scalar in scalars),
-    )
+    return tuple(_number(graph, scalar) for quantity in wanted for scalar in quantity.scalars(motion))
+
+
+def outputs_of(model: Model, outputs: Sequence[str]) -> tuple[Field, ...]:
+    """The arrays that a program writes."""
+    return tuple(Field(name, QUANTITIES[name].shape(model)) for name in outputs)
 
 
 def fields(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot] = ()) -> tuple[Field, ...]:
@@ -81,18 +115,15 @@ def _number(graph: Graph, scalar: Scalar) -> int:
     return scalar.number if isinstance(scalar, Node) else graph.constant(scalar)
 
 
-def _tracing(graph: Graph) -> Arithmetic:
-    """The arithmetic that records in a graph; numbers of the model stay floats and fold among themselves."""
-
-    def keep(vector: Vector) -> Vector:
-        graph.kept.update(_nodes(vector))
-        return vector
-
-    return Arithmetic(number=lambda value, error: value, column=lambda x: x, sincos=_sincos, sign=_sign, keep=keep)
+def _keep(vector: Vector) -> Vector:
+    for scalar in vector:
+        if isinstance(scalar, Node):
+            scalar.graph.kept.add(scalar.number)
+    return vector
 
 
-def _nodes(vector: Vector) -> Iterator[int]:
-    return (scalar.number for scalar in vector if isinstance(scalar, Node))
+def _value(value: float, error: float) -> float:
+    return value
 
 
 def _sincos(q: Scalar) -> tuple[Scalar, Scalar]:
@@ -104,3 +135,7 @@ def _sincos(q: Scalar) -> tuple[Scalar, Scalar]:
 
 def _sign(x: Scalar) -> Scalar:
     return x.function(Op.SIGN) if isinstance(x, Node) else float((x > 0) - (x < 0))
+
+
+TRACING = Arithmetic(number=_value, column=lambda x: x, sincos=_sincos, sign=_sign, keep=_keep)
+"""The arithmetic that records; numbers of the model stay floats and fold among themselves."""

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from rttrr_pin.errors import InputError, UnknownNameError
 from rttrr_pin.kernel.program import Field, Program
+from rttrr_pin.kernel.schedule import Schedule
 
 Array = NDArray[Any]
 """float64 or float32 in, float64 out; (N, width) with any strides."""
@@ -44,12 +45,14 @@ class Emitter(Protocol):
     Attributes:
         name: in the registry.
         identity: everything that its bytes depend on but the program: versions, processor.
+        calls: whether it takes schedules as well; else straight lines only, however long.
     """
 
     name: str
     identity: str
+    calls: bool
 
-    def emit(self, program: Program) -> bytes:
+    def emit(self, program: Program | Schedule) -> bytes:
         """Translate a program."""
         ...
 

@@ -101,6 +101,7 @@ class CEmitter:
 
     name = "c"
     identity = "c"
+    calls = False
 
     def emit(self, program: Program) -> bytes:
         """C source of the function alone."""

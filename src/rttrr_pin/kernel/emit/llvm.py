@@ -19,7 +19,9 @@ from numpy.typing import NDArray
 from rttrr_pin.kernel.emit import Array, Task
 from rttrr_pin.kernel.emit.fastcall import python_function
 from rttrr_pin.kernel.emit.llvm_body import Layout, body
+from rttrr_pin.kernel.emit.llvm_calls import calls
 from rttrr_pin.kernel.program import Field, Program
+from rttrr_pin.kernel.schedule import Schedule
 
 BLOCK = 64
 """States in a block."""
@@ -29,6 +31,9 @@ CACHE_LINES = 2 * 8
 
 FIRST_LEVEL = 24 * 1024
 """Bytes that a block's inputs and outputs may take, to stay in the first level of the cache with room for the rest."""
+
+SECOND_LEVEL = 512 * 1024
+"""Bytes that all columns of a block may take in a schedule, which goes through them twice."""
 
 OPTIMISATION = 2
 
@@ -63,6 +68,7 @@ class LlvmEmitter:
     """Compiles for the processor at hand."""
 
     name = "llvm"
+    calls = True
 
     def __init__(self) -> None:
         _initialised()
@@ -78,19 +84,25 @@ class LlvmEmitter:
             cpu=self.processor, features=self.features, opt=OPTIMISATION, jit=True, reloc="pic", codemodel="jitdefault"
         )
 
-    def layout(self, program: Program) -> Layout:
+    def layout(self, program: Program | Schedule) -> Layout:
         """How blocks of this program lie in memory: as many states as keep its columns in the nearest cache."""
-        width = program.width_in + sum(field.width for field in program.outputs)
+        if isinstance(program, Schedule):
+            size, width = SECOND_LEVEL, program.columns
+        else:
+            size, width = FIRST_LEVEL, program.width_in + program.width_out
         w = lanes(self.processor, self.features)
-        block = min(BLOCK, max(w, FIRST_LEVEL // (8 * max(width, 1)) // w * w))
+        block = min(BLOCK, max(w, size // (8 * max(width, 1)) // w * w))
         return Layout(w, block, block + w)
 
-    def assembly(self, program: Program) -> llvm.ModuleRef:
+    def assembly(self, program: Program | Schedule) -> llvm.ModuleRef:
         """The program as LLVM's assembly."""
         from rttrr_pin.kernel.emit.llvm_driver import driver  # llvmlite's builder, not needed for what is on disk
 
         layout = self.layout(program)
-        text, between = body(program, layout)
+        if isinstance(program, Schedule):
+            text, between = calls(program, layout), program.between
+        else:
+            text, between = body(program, layout)
         module = llvm.parse_assembly(driver(program, layout, between))
         options = llvm.create_pipeline_tuning_options(speed_level=OPTIMISATION)
         options.loop_vectorization = options.slp_vectorization = options.loop_unrolling = False
@@ -100,7 +112,7 @@ class LlvmEmitter:
         module.verify()
         return module
 
-    def emit(self, program: Program) -> bytes:
+    def emit(self, program: Program | Schedule) -> bytes:
         """Object code."""
         code: bytes = self._machine().emit_object(self.assembly(program))
         return code
@@ -129,7 +141,10 @@ class LlvmExecutable:
         address = records.ctypes.data
 
         def task(start: int, stop: int, alive: object = (self, records, arrays)) -> bool:
-            return bool(self._run(address, start, stop))
+            code = self._run(address, start, stop)
+            if code < 0:
+                raise MemoryError("no memory for one block of states")
+            return bool(code)
 
         return task
 

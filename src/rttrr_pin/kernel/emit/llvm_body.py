@@ -114,7 +114,7 @@ def body(program: Program, layout: Layout) -> tuple[str, int]:
     arguments = "ptr %in, ptr %out, ptr %between, i64 %m"
     calls = "\n".join(f"  call void @segment_{k}({arguments})" for k in range(len(parts)))
     whole = f"define void @body({arguments}) noinline {{\n{calls}\n  ret void\n}}\n"
-    return "\n".join([*_declarations(layout.lanes), *texts, whole, *_fill(program, layout)]), len(passed)
+    return "\n".join([*declarations(layout.lanes), *texts, whole, *_fill(program, layout)]), len(passed)
 
 
 def _fill(program: Program, layout: Layout) -> Iterator[str]:
@@ -132,7 +132,8 @@ def _fill(program: Program, layout: Layout) -> Iterator[str]:
     yield f"define void @fill(ptr %out, i64 %m) noinline {{\n{calls}\n  ret void\n}}\n"
 
 
-def _declarations(lanes: int) -> Iterator[str]:
+def declarations(lanes: int) -> Iterator[str]:
+    """Of the functions that operations on vectors call."""
     v = f"<{lanes} x double>"
     yield f"declare {v} @llvm.fma.v{lanes}f64({v}, {v}, {v})"
     yield f"declare {v} @llvm.fabs.v{lanes}f64({v})"
@@ -178,7 +179,7 @@ def _passed(program: Program, parts: list[list[int]]) -> dict[int, int]:
 def _segment(program: Program, layout: Layout, k: int, part: list[int], passed: dict[int, int]) -> str:
     """One loop."""
     lines = Lines(layout.lanes)
-    writer = _Writer(program, layout, lines, passed, set(part))
+    writer = VectorCode(program, layout, lines, passed)
     for x in part:
         writer.compute(x)
         if x in passed:
@@ -215,14 +216,23 @@ done:
 
 
 @dataclass
-class _Writer:
-    """Writes the operations of one segment."""
+class VectorCode:
+    """Writes operations on vectors.
+
+    Attributes:
+        program: whose operations they are.
+        layout: how the block lies in memory.
+        lines: of the function that is written.
+        passed: columns of values that other parts of the program compute.
+        value: the vector of each node so far.
+        angles: sine and cosine of each angle so far.
+        label: of the present basic block.
+    """
 
     program: Program
     layout: Layout
     lines: Lines
-    passed: dict[int, int]
-    inside: set[int]
+    passed: dict[int, int] = field(default_factory=dict)
     value: dict[int, str] = field(default_factory=dict)
     angles: dict[int, tuple[str, str]] = field(default_factory=dict)
     label: str = "loop"
@@ -232,12 +242,20 @@ class _Writer:
         known = self.value.get(x)
         if known is not None:
             return known
-        graph, lines = self.program.graph, self.lines
+        graph = self.program.graph
         if graph.op[x] is Op.CONSTANT:
-            return lines.splat(graph.value[x])
-        base, column = ("%q", graph.args[x][0]) if graph.op[x] is Op.INPUT else ("%b", self.passed[x])
-        self.value[x] = lines(f"load {lines.vector}, ptr {lines.at(base, column * self.layout.pitch)}")
+            return self.lines.splat(graph.value[x])
+        self.value[x] = self.read(graph.args[x][0]) if graph.op[x] is Op.INPUT else self.column("%b", self.passed[x])
         return self.value[x]
+
+    def read(self, place: int) -> str:
+        """The vector of an input."""
+        return self.column("%q", place)
+
+    def column(self, base: str, column: int) -> str:
+        """The vector at the present states of a column."""
+        lines = self.lines
+        return lines(f"load {lines.vector}, ptr {lines.at(base, column * self.layout.pitch)}")
 
     def compute(self, x: int) -> None:
         """The operation of a node."""

@@ -13,6 +13,9 @@ from rttrr_pin.kernel.emit.llvm_body import Layout
 I64, F64, F32, PTR, I1 = ir.IntType(64), ir.DoubleType(), ir.FloatType(), ir.PointerType(), ir.IntType(1)
 I32 = ir.IntType(32)
 
+LINE = 64
+"""Bytes in a line of the cache."""
+
 
 def number(x: int) -> ir.Constant:
     """An int64."""
@@ -64,8 +67,13 @@ class Writer:
     def memory(self, kind: ir.Type, count: int = 1) -> ir.Value:
         """Memory of this function's own, on a cache line."""
         memory = self.builder.alloca(kind, count)
-        memory.align = 64
+        memory.align = LINE
         return untyped(memory)
+
+    def aligned(self, address: ir.Value) -> ir.Value:
+        """The next address on a cache line."""
+        b = self.builder
+        return b.inttoptr(b.and_(b.add(b.ptrtoint(address, I64), number(LINE - 1)), number(-LINE)), PTR)
 
     def least(self, x: ir.Value, y: ir.Value) -> ir.Value:
         """The smaller of two."""

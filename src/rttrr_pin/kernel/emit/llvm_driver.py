@@ -1,6 +1,6 @@
 """The compiled code around a program: blocks of states in and out, and the call from Python for a single state.
 
-    int64 run(int64 *arrays, int64 start, int64 stop)    some states of a batch; 1 where a result is not finite
+    int64 run(int64 *arrays, int64 start, int64 stop)    1 where a result is not finite, -1 without memory
     PyObject *one(PyObject *self, PyObject *const *args, Py_ssize_t count)    up to MOST states, called by CPython
 
 `arrays` has `RECORD` numbers for each input, then each output: address, distance in bytes from state to state and from
@@ -11,8 +11,9 @@ state goes through the same instructions: its bits do not depend on its neighbou
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
-from itertools import combinations, product
+from itertools import combinations, groupby, product
 
 from llvmlite import ir
 
@@ -24,6 +25,7 @@ from rttrr_pin.kernel.emit.llvm_columns import (
     I1,
     I32,
     I64,
+    LINE,
     PTR,
     Writer,
     function,
@@ -33,8 +35,8 @@ from rttrr_pin.kernel.emit.llvm_columns import (
     unsound,
     untyped,
 )
-from rttrr_pin.kernel.expression import Op
 from rttrr_pin.kernel.program import Field, Program
+from rttrr_pin.kernel.schedule import Schedule
 
 RECORD = 5
 """Numbers that describe an array."""
@@ -42,11 +44,14 @@ RECORD = 5
 MOST = 4096
 """States that `one` computes in one call; more are worth threads, and must not hold up Ctrl-C."""
 
+STACK = 128 * 1024
+"""Bytes of a block that may lie on the stack, of which threads have little; larger ones are allocated."""
+
 CONTEXT = ("ndarray", "float64", "none", "true")
 """Python objects whose addresses are set after loading."""
 
 
-def driver(program: Program, layout: Layout, between: int) -> str:
+def driver(program: Program | Schedule, layout: Layout, between: int) -> str:
     """The functions around the program's body, as LLVM assembly.
 
     Args:
@@ -105,7 +110,7 @@ class _Block:
         unsound: tells whether there is NaN or infinity in columns.
     """
 
-    program: Program
+    program: Program | Schedule
     layout: Layout
     between: int
     body: ir.Function
@@ -114,10 +119,22 @@ class _Block:
     unpack: ir.Function
     unsound: ir.Function
 
-    def scratch(self, w: Writer) -> list[ir.Value]:
-        """Memory for columns: of the inputs, the outputs, and what is passed between parts."""
+    @contextmanager
+    def scratch(self, w: Writer, without: ir.Block) -> Iterator[list[ir.Value]]:
+        """Memory for columns: of the inputs, the outputs, and what is passed between parts, one behind the other."""
         widths = (_columns(self.program.inputs), _columns(self.program.outputs), self.between)
-        return [w.memory(F64, max(1, width) * self.layout.pitch) for width in widths]
+        sizes = [width * self.layout.pitch * 8 for width in widths]
+        total = max(sum(sizes), 8)
+        held = None
+        if total <= STACK:
+            base = w.memory(F64, total // 8)
+        else:
+            held = w.builder.call(_library(w, "malloc", PTR, [I64]), [number(total + LINE)])
+            _require(w.builder, w.builder.icmp_unsigned("!=", held, ir.Constant(PTR, None)), without)
+            base = w.aligned(held)
+        yield [w.offset(base, sum(sizes[:k])) for k in range(3)]
+        if held is not None:
+            w.builder.call(_library(w, "free", ir.VoidType(), [PTR]), [held])
 
     def write(self, w: Writer, arrays: Sequence[Array], m: ir.Value, scratch: Sequence[ir.Value]) -> ir.Value:
         """Gather m states, run the body, scatter the results; returns whether a result is not finite."""
@@ -128,9 +145,9 @@ class _Block:
         padded = self.padded(b, m)
         b.call(self.body, [inputs, outputs, between, padded])
         bad = b.call(self.unsound, [outputs, number(_columns(self.program.outputs)), padded])
-        for place in _unread(self.program):
+        for place, following in _runs(self.program.unread):
             column = w.offset(inputs, place * self.layout.pitch * 8)
-            bad = b.or_(bad, b.call(self.unsound, [column, number(1), padded]))
+            bad = b.or_(bad, b.call(self.unsound, [column, number(following), padded]))
         for array, field, at in self._placed(w, arrays[count:], self.program.outputs, outputs):
             b.call(self.unpack, [array.base, array.row, array.column, number(field.width), at, m])
         return bad
@@ -163,11 +180,17 @@ def _columns(fields: Sequence[Field]) -> int:
     return sum(field.width for field in fields)
 
 
-def _unread(program: Program) -> list[int]:
-    """Places of inputs that no output depends on; what is not finite there would go unseen."""
-    graph = program.graph
-    read = {graph.args[x][0] for x in program.order if graph.op[x] is Op.INPUT}
-    return [place for place in range(program.width_in) if place not in read]
+def _runs(places: Sequence[int]) -> Iterator[tuple[int, int]]:
+    """Places one behind the other, as the first and their count."""
+    for _, run in groupby(enumerate(places), lambda pair: pair[1] - pair[0]):
+        together = [place for _, place in run]
+        yield together[0], len(together)
+
+
+def _library(w: Writer, name: str, result: ir.Type, arguments: Sequence[ir.Type]) -> ir.Function:
+    """A function of the C library."""
+    module = w.builder.module
+    return module.globals.get(name) or ir.Function(module, ir.FunctionType(result, arguments), name)
 
 
 def _run(module: ir.Module, block: _Block) -> None:
@@ -179,19 +202,25 @@ def _run(module: ir.Module, block: _Block) -> None:
         [w.load(I64, w.offset(records, 8 * (RECORD * k + entry))) for entry in (0, 1, 2, 4)] for k in range(len(fields))
     ]
     arrays = [Array(w.builder.inttoptr(base, PTR), *rest) for base, *rest in described]
-    w.builder.ret(_blocks(w, block, arrays, start, stop))
+    without = w.builder.append_basic_block("without_memory")
+    w.builder.ret(_blocks(w, block, arrays, (start, stop), without))
+    w.builder.position_at_end(without)
+    w.builder.ret(number(-1))
 
 
-def _blocks(w: Writer, block: _Block, arrays: Sequence[Array], start: ir.Value, stop: ir.Value) -> ir.Value:
-    """Compute the states from start to stop, block by block; not 0 where a result is not finite."""
-    b, scratch = w.builder, block.scratch(w)
+def _blocks(
+    w: Writer, block: _Block, arrays: Sequence[Array], between: tuple[ir.Value, ir.Value], without: ir.Block
+) -> ir.Value:
+    """Compute the states between two, block by block; not 0 where a result is not finite."""
+    b, (start, stop) = w.builder, between
     bad = w.memory(I64)
     w.store(number(0), bad)
-    b.call(block.fill, [scratch[1], block.padded(b, w.least(number(block.layout.block), b.sub(stop, start)))])
-    with w.loop(stop, block.layout.block, start) as first:
-        m = w.least(number(block.layout.block), b.sub(stop, first))
-        here = [replace(array, base=w.offset(array.base, b.mul(first, array.row))) for array in arrays]
-        w.store(b.or_(w.load(I64, bad), b.zext(block.write(w, here, m, scratch), I64)), bad)
+    with block.scratch(w, without) as scratch:
+        b.call(block.fill, [scratch[1], block.padded(b, w.least(number(block.layout.block), b.sub(stop, start)))])
+        with w.loop(stop, block.layout.block, start) as first:
+            m = w.least(number(block.layout.block), b.sub(stop, first))
+            here = [replace(array, base=w.offset(array.base, b.mul(first, array.row))) for array in arrays]
+            w.store(b.or_(w.load(I64, bad), b.zext(block.write(w, here, m, scratch), I64)), bad)
     return w.load(I64, bad)
 
 
@@ -219,7 +248,7 @@ def _one(module: ir.Module, block: _Block) -> None:
             batched, m = _batch(w, item, field, refuse)
         arrays.append(_understood(w, item, field, (batched, m, k >= len(block.program.inputs)), refuse))
     _require_apart(w, block, arrays, m, refuse)
-    _require(b, b.icmp_signed("==", _blocks(w, block, arrays, number(0), m), number(0)), refuse)
+    _require(b, b.icmp_signed("==", _blocks(w, block, arrays, (number(0), m), refuse), number(0)), refuse)
     b.call(incref, [true])
     b.ret(true)
     b.position_at_end(refuse)

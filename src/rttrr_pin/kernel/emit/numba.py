@@ -285,6 +285,7 @@ class NumbaEmitter:
 
     name = "numba"
     identity = "numba"
+    calls = False
 
     def emit(self, program: Program) -> bytes:
         """Python source; what Numba makes of it is not kept on disk."""

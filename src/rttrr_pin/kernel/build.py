@@ -1,0 +1,89 @@
+"""What is compiled for a robot: straight lines where they stay short, calls of steps where the robot is too large."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from rttrr_pin.errors import InputError
+from rttrr_pin.kernel.columns import arranged
+from rttrr_pin.kernel.expression import Graph, GraphFullError
+from rttrr_pin.kernel.program import Program
+from rttrr_pin.kernel.quantities import QUANTITIES
+from rttrr_pin.kernel.recorder import Recorder
+from rttrr_pin.kernel.schedule import Schedule
+from rttrr_pin.kernel.simplify import simplify
+from rttrr_pin.kernel.trace import TRACING, PayloadSlot, fields, outputs_of, record, trace
+from rttrr_pin.model import Model
+
+STRAIGHT_LINE = 20_000
+"""Operations, as traced, beyond which a program is made of calls: straight lines would take seconds to compile."""
+
+NODES = 3
+"""Nodes that the tracer records for each operation that an output needs, at most: 1.8 in chains about any axes, 2.9 in
+the RTTRR arm, most of whose numbers are zero. A robot with more is not traced to its end."""
+
+LONGEST = 4_000_000
+"""Nodes of what cannot be made of calls: beyond it, compiling takes more minutes and memory than anyone has."""
+
+
+def build(
+    model: Model,
+    outputs: Sequence[str],
+    payloads: Sequence[PayloadSlot] = (),
+    straight_line: int | None = STRAIGHT_LINE,
+) -> Program | Schedule:
+    """The program of a robot, of the kind that suits its size.
+
+    Args:
+        model: the robot.
+        outputs: names from `QUANTITIES`.
+        payloads: where payloads act.
+        straight_line: operations, as traced, beyond which it is made of calls; None for never.
+
+    Returns:
+        Straight lines or calls, simplified.
+
+    Raises:
+        InputError: the robot is too large for these outputs.
+    """
+    if straight_line is None or not all(QUANTITIES[name].by_steps for name in outputs):
+        return simplify(_whole(model, outputs, payloads))
+    try:
+        program = trace(model, outputs, payloads, most=straight_line * NODES)
+    except GraphFullError:
+        return schedule(model, outputs, payloads)
+    short = program.operations.total <= straight_line
+    return simplify(program) if short else schedule(model, outputs, payloads)
+
+
+def _whole(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot]) -> Program:
+    """Straight lines, however long, but no longer than can be compiled."""
+    try:
+        return trace(model, outputs, payloads, most=LONGEST)
+    except GraphFullError:
+        names = [name for name in outputs if not QUANTITIES[name].by_steps] or outputs
+        raise InputError(
+            f"{', '.join(names)} of robot {model.name!r} with {model.nv} degrees of freedom: the program has more than "
+            f"{LONGEST} nodes, expected fewer; take differences of tau, or a smaller part of the robot"
+        ) from None
+
+
+def schedule(
+    model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot] = (), lumped: bool = True
+) -> Schedule:
+    """A robot as calls, however large or small it is.
+
+    Args:
+        model: the robot.
+        outputs: names from `QUANTITIES`, of quantities with `by_steps`.
+        payloads: where payloads act.
+        lumped: whether inertia may be moved between links where that leaves the outputs as they are.
+
+    Returns:
+        Calls of steps, each step simplified.
+    """
+    recorder = Recorder(Graph())
+    arithmetic = replace(TRACING, call=recorder.call)
+    results = record(recorder.graph, arithmetic, model, outputs, payloads, lumped)
+    return arranged(recorder, results, fields(model, outputs, payloads), outputs_of(model, outputs))
