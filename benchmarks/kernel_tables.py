@@ -116,3 +116,23 @@ def operations() -> list[str]:
         told = "; ".join(f"{name} {counts[0]} / {counts[1]}" for name, counts in programs.items())
         lines.append(f"| {robot} | {told} |")
     return lines
+
+
+def joints() -> list[str]:
+    """The cost of chains of many lengths, by straight lines and by calls."""
+    data = result("kernel_joints")
+    lines = [
+        f"Chains of revolute joints about any axes, ns a state and joint, and seconds to compile ({machine(data)}; "
+        "`python benchmarks/kernel_joints.py`):",
+        "",
+        "| joints | as it is chosen | compiled in | by calls | compiled in |",
+        "|---|---|---|---|---|",
+    ]
+    for count, kinds in data["joints"].items():
+        chosen, calls = kinds["chosen"], kinds["calls"]
+        kind = "straight lines" if chosen["kind"] == "lines" else "calls"
+        lines.append(
+            f"| {count} | {chosen['ns_per_state_and_joint']:.0f} ({kind}) | {chosen['compile_s']:.1f} s "
+            f"| {calls['ns_per_state_and_joint']:.0f} | {calls['compile_s']:.1f} s |"
+        )
+    return lines

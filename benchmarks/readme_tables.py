@@ -87,7 +87,11 @@ TABLES: dict[str, dict[str, Callable[[], list[str]]]] = {
         "cost": cost_table,
         "robots": robots_table,
     },
-    "docs/kernel.md": {"operations": kernel_tables.operations, "peers": kernel_tables.peers},
+    "docs/kernel.md": {
+        "joints": kernel_tables.joints,
+        "operations": kernel_tables.operations,
+        "peers": kernel_tables.peers,
+    },
 }
 """By page, then by marker."""
 

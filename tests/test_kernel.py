@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import gc
+import inspect
 import subprocess
 import sys
 import threading
 import tracemalloc
+import weakref
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
 from typing import Any
@@ -899,3 +901,35 @@ def test_calls_leave_nothing_behind(rttrr: Robot, case: str) -> None:
         tracemalloc.stop()
     assert min(references) < count // 10
     assert min(growth) < 8 * count
+
+
+def test_calling_at_once_and_in_general_are_one(rttrr: Robot) -> None:
+    """kernel(q, v, a, out=out) is answered by compiled code, and all other ways to say it by Python: the same bits."""
+    kernel = Robot(rttrr.model).compile("tau")
+    q, v, a = np.random.default_rng(5).normal(size=(3, 5))
+    first = kernel(q, v, a)
+    out = np.zeros(5)
+    assert kernel(q, v, a, out=out) is out
+    np.testing.assert_array_equal(out, first)
+    for again in (kernel(q, v=v, a=a), kernel(q, v, a, None, np.zeros(5)), kernel(q=q, v=v, a=a, out=np.zeros(5))):
+        np.testing.assert_array_equal(again, first)
+    assert isinstance(kernel, Kernel) and type(kernel).__name__ == "Kernel"
+    assert list(inspect.signature(kernel).parameters) == ["q", "v", "a", "payload", "out", "threads"]
+    answer = kernel.__call__
+    del kernel
+    gc.collect()
+    assert answer(q, v, a, out=out) is out
+    with pytest.raises(TypeError):
+        answer(q, v, a, output=out)
+    with pytest.raises(NumberError, match="nan"):
+        answer(q * np.nan, v, a, out=out)
+
+
+def test_a_kernel_that_no_one_holds_is_freed(rttrr: Robot) -> None:
+    """It holds itself through what answers at once; the collector finds that."""
+    kernel = Robot(rttrr.model).compile("tau")
+    kernel(*np.zeros((3, 5)))
+    gone = weakref.ref(kernel)
+    del kernel
+    gc.collect()
+    assert gone() is None

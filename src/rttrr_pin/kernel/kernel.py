@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import inspect
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from math import prod
 from operator import itemgetter
 from typing import Any
@@ -193,7 +194,19 @@ class Kernel:
                     found = self._variants[slots] = self._compiled(slots)
                     if not slots and not self._floats:  # quaternions are looked at in Python
                         self._one = _shortcut(found.executable.one, self._inputs, self.outputs, self._single)
+                        self._answer_at_once(found.executable)
         return found
+
+    def _answer_at_once(self, executable: Executable) -> None:
+        """Let compiled code take kernel(q, v, a, out=out): a `__call__` in Python takes longer than the dynamics."""
+        call = getattr(executable, "call", None)
+        if call is None or not self._single or self._inputs != "qva":
+            return
+        self._general = partial(Kernel.__call__, self)
+        answer = call(self._general, self)
+        if answer is not None:
+            self.__signature__ = inspect.signature(self._general)
+            self.__class__ = type("Kernel", (Kernel,), {"__call__": answer, "__doc__": Kernel.__doc__})
 
     def _compiled(self, slots: tuple[PayloadSlot, ...]) -> Variant:
         straight_line = self._straight_line if self._emitter.calls else None

@@ -8,14 +8,21 @@ compiled extension does.
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterable
 from functools import cache
+from typing import Any
 
 import numpy as np
 
 from rttrr_pin.kernel.emit.layout import NDARRAY
 
-METH_FASTCALL = 0x0080
+METH_VARARGS, METH_KEYWORDS, METH_FASTCALL = 0x0001, 0x0002, 0x0080
+
+SIGNATURE = b"__call__(q, v=None, a=None, payload=None, out=None, threads=None)\n--\n\nSee Kernel."
+
+
+Answer = Callable[..., Any]
 
 
 class _Method(ctypes.Structure):
@@ -37,14 +44,40 @@ def python_function(address: int, set_context: int) -> Callable[..., bool | None
     """The compiled function as a callable, or None where arrays do not lie in memory as it expects."""
     if not arrays_lie_as_expected():
         return None
+    _set(set_context, enumerate((np.ndarray, np.dtype(np.float64), None, True)))
+    return _made(_Method(b"one", address, METH_FASTCALL, None), None)
+
+
+def python_call(
+    address: int, set_context: int, general: Callable[..., Any], owner: object
+) -> Callable[..., Any] | None:
+    """The compiled function that answers f(q, v, a, out=out) itself, and hands all other calls to a general one.
+
+    Args:
+        address: of the function.
+        set_context: of the function that tells it what to know.
+        general: takes the calls that it declines; the owner must keep it.
+        owner: lives as long as the callable.
+    """
+    if not arrays_lie_as_expected():
+        return None
+    _set(set_context, ((4, sys.intern("out")), (5, general)))
+    return _made(_Method(b"__call__", address, METH_VARARGS | METH_KEYWORDS, SIGNATURE), owner)
+
+
+def _set(set_context: int, items: Iterable[tuple[int, object]]) -> None:
     put = ctypes.CFUNCTYPE(None, ctypes.c_int64, ctypes.py_object)(set_context)
-    for place, item in enumerate((np.ndarray, np.dtype(np.float64), None, True)):
+    for place, item in items:
         put(place, item)
-    method = _Method(b"one", address, METH_FASTCALL, None)
+
+
+def _made(method: _Method, owner: object) -> Callable[..., Any]:
+    """A builtin function; it keeps its owner alive."""
     _alive.append(method)
     make = ctypes.pythonapi.PyCFunction_NewEx
-    make.restype, make.argtypes = ctypes.py_object, (ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p)
-    function: Callable[..., bool | None] = make(ctypes.addressof(method), None, None)
+    make.restype = ctypes.py_object
+    make.argtypes = (ctypes.c_void_p, ctypes.c_void_p if owner is None else ctypes.py_object, ctypes.c_void_p)
+    function: Callable[..., Any] = make(ctypes.addressof(method), owner, None)
     return function
 
 

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import ctypes
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import cache
+from typing import Any
 
 import llvmlite
 import llvmlite.binding as llvm
@@ -17,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rttrr_pin.kernel.emit import Array, Task
-from rttrr_pin.kernel.emit.fastcall import python_function
+from rttrr_pin.kernel.emit.fastcall import python_call, python_function
 from rttrr_pin.kernel.emit.llvm_body import Layout, body
 from rttrr_pin.kernel.emit.llvm_calls import calls
 from rttrr_pin.kernel.program import Field, Program
@@ -133,6 +134,11 @@ class LlvmExecutable:
         kind = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64)
         self._run = kind(engine.get_function_address("run"))
         self.one = python_function(engine.get_function_address("one"), engine.get_function_address("set_context"))
+
+    def call(self, general: Callable[..., Any], owner: object) -> Callable[..., Any] | None:
+        """A callable for f(q, v, a, out=out) on one state or few; what it declines goes to the general one."""
+        address = self._engine.get_function_address
+        return python_call(address("call"), address("set_context"), general, owner)
 
     def bind(self, inputs: Sequence[Array], outputs: Sequence[NDArray[np.float64]]) -> Task:
         """Describe the arrays once, for any number of calls from any thread."""

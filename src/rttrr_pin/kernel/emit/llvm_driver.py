@@ -2,6 +2,7 @@
 
     int64 run(int64 *arrays, int64 start, int64 stop)    1 where a result is not finite, -1 without memory
     PyObject *one(PyObject *self, PyObject *const *args, Py_ssize_t count)    up to MOST states, called by CPython
+    PyObject *call(PyObject *self, PyObject *args, PyObject *named)    the same as f(q, v, a, out=out)
 
 `arrays` has `RECORD` numbers for each input, then each output: address, distance in bytes from state to state and from
 column to column, count of columns, 1 for float32. States are gathered into columns, so that whatever the layout, every
@@ -17,7 +18,7 @@ from itertools import combinations, groupby, product
 
 from llvmlite import ir
 
-from rttrr_pin.kernel.emit.layout import ALIGNED, C_CONTIGUOUS, NDARRAY, WRITEABLE
+from rttrr_pin.kernel.emit.layout import ALIGNED, C_CONTIGUOUS, NDARRAY, TUPLE, WRITEABLE
 from rttrr_pin.kernel.emit.llvm_body import Layout
 from rttrr_pin.kernel.emit.llvm_columns import (
     F32,
@@ -47,7 +48,7 @@ MOST = 4096
 STACK = 128 * 1024
 """Bytes of a block that may lie on the stack, of which threads have little; larger ones are allocated."""
 
-CONTEXT = ("ndarray", "float64", "none", "true")
+CONTEXT = ("ndarray", "float64", "none", "true", "out", "general")
 """Python objects whose addresses are set after loading."""
 
 
@@ -231,7 +232,7 @@ def _one(module: ir.Module, block: _Block) -> None:
     untyped(context)
     _set_context(module, context)
     incref = ir.Function(module, ir.FunctionType(ir.VoidType(), [PTR]), "Py_IncRef")
-    _, w = function(module, "one", PTR, [PTR, PTR, I64], internal=False)
+    made, w = function(module, "one", PTR, [PTR, PTR, I64], internal=False)
     b = w.builder
     _, args, count = b.function.args
     kinds = [w.load(PTR, w.offset(context, 8 * k)) for k in range(2)]
@@ -254,6 +255,44 @@ def _one(module: ir.Module, block: _Block) -> None:
     b.position_at_end(refuse)
     b.call(incref, [none])
     b.ret(none)
+    _call(module, block, context, (made, incref))
+
+
+def _call(module: ir.Module, block: _Block, context: ir.GlobalVariable, known: tuple[ir.Function, ir.Function]) -> None:
+    """The function call: f(q, v, a, out=out) by `one`, everything else by the general Python function."""
+    one, incref = known
+    find, size, general_call, decref = (
+        ir.Function(module, ir.FunctionType(result, arguments), name)
+        for name, result, arguments in (
+            ("PyDict_GetItem", PTR, [PTR, PTR]),
+            ("PyDict_Size", I64, [PTR]),
+            ("PyObject_Call", PTR, [PTR, PTR, PTR]),
+            ("Py_DecRef", ir.VoidType(), [PTR]),
+        )
+    )
+    _, w = function(module, "call", PTR, [PTR, PTR, PTR], internal=False)
+    b, count = w.builder, len(block.program.inputs)
+    _, args, named = b.function.args
+    true, key, general = (
+        w.load(PTR, w.offset(context, 8 * CONTEXT.index(name))) for name in ("true", "out", "general")
+    )
+    otherwise = b.append_basic_block("general")
+    _require(b, b.icmp_signed("!=", b.ptrtoint(named, I64), number(0)), otherwise)
+    _require(b, b.icmp_signed("==", w.load(I64, w.offset(args, TUPLE["size"])), number(count)), otherwise)
+    _require(b, b.icmp_signed("==", b.call(size, [named]), number(1)), otherwise)
+    out = b.call(find, [named, key])
+    _require(b, b.icmp_signed("!=", b.ptrtoint(out, I64), number(0)), otherwise)
+    vector = w.memory(PTR, count + 1)
+    for k in range(count):
+        w.store(w.load(PTR, w.offset(args, TUPLE["items"] + 8 * k)), w.offset(vector, 8 * k))
+    w.store(out, w.offset(vector, 8 * count))
+    answer = b.call(one, [ir.Constant(PTR, None), vector, number(count + 1)])
+    b.call(decref, [answer])
+    _require(b, b.icmp_unsigned("==", answer, true), otherwise)
+    b.call(incref, [out])
+    b.ret(out)
+    b.position_at_end(otherwise)
+    b.ret(b.call(general_call, [general, args, named]))
 
 
 def _require_float64(w: Writer, item: ir.Value, kinds: Sequence[ir.Value], refuse: ir.Block) -> None:
