@@ -83,6 +83,7 @@ class Kernel:
         self._lock = threading.Lock()
         self._inputs = "".join(field.name for field in fields(model, self.outputs))
         self._floats = any(joint.nq != joint.nv for joint in model.moving)
+        self._widths = {"q": model.nq, "v": model.nv, "a": model.nv}
         self._one: One | None = None
 
     def __repr__(self) -> str:
@@ -141,8 +142,8 @@ class Kernel:
             NumberError: a value is NaN, inf, complex, ..., or so large that the result overflows.
             InputError: an argument is missing, or too many, or `out` is no float64 array that can be written.
         """
-        one = self._one
-        if one is not None and payload is None and threads is None and one(q, v, a, out):
+        one = self._one  # on this thread
+        if one is not None and payload is None and threads in (None, 1) and threads is not True and one(q, v, a, out):
             return out
         _check_threads(threads)
         variant_loads = self._loads(payload)
@@ -175,14 +176,11 @@ class Kernel:
                     f"{name} {what}: {', '.join(self.outputs)} depend on {', '.join(self._inputs)}; pass these"
                 )
             if x is not None:
-                arrays[name] = x if _readable(x, self._width(name)) else coordinates(name, x, self.model.moving)
+                arrays[name] = x if _readable(x, self._widths[name]) else coordinates(name, x, self.model.moving)
         if self._floats and "q" in arrays:
             q = finite("q", np.asarray(arrays["q"], dtype=np.float64), _labels("q", self.model.moving))
             check_quaternions(q, self.model.moving)
         return arrays
-
-    def _width(self, name: str) -> int:
-        return self.model.nq if name == "q" else self.model.nv
 
     def _variant(self, slots: tuple[PayloadSlot, ...]) -> Variant:
         """The program for payloads there: from this process, from disk, or compiled now."""

@@ -10,7 +10,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.kernel.expression import Graph, Op
+from rttrr_pin.kernel.expression import LEAVES, Graph, Op
 
 Array = NDArray[np.float64]
 
@@ -77,8 +77,18 @@ class Program:
 
     @cached_property
     def order(self) -> tuple[int, ...]:
-        """The nodes that are needed, each behind what it takes."""
-        return tuple(self.graph.reachable(self.results))
+        """The nodes that are needed, each behind what it takes.
+
+        What depends on no finished vector, that is where the links are placed, comes first: compiled so, Panda and
+        Talos need 5 to 10 percent fewer instructions than link by link, as the specification has it.
+        """
+        nodes = self.graph.reachable(self.results)
+        behind: set[int] = set()
+        for x in nodes:
+            args = self.graph.args[x] if self.graph.op[x] not in LEAVES else ()
+            if x in self.graph.kept or any(y in behind for y in args):
+                behind.add(x)
+        return tuple(sorted(nodes, key=lambda x: (x in behind, x)))
 
     @property
     def width_in(self) -> int:
