@@ -1,7 +1,7 @@
 """Passes that make a program cheaper. Each returns a program with the same values but for rounding.
 
-Folding, common subexpressions and dead code need no pass: the tracer sees to them as it records. Nor does the order:
-that of the trace, outwards and then inwards, link by link, was faster than the depth-first orders that were tried.
+Folding, common subexpressions and dead code need no pass: the tracer sees to them as it records. Nor does the order
+(`Program.order`), which was faster than the depth-first orders that were tried.
 """
 
 from __future__ import annotations
@@ -70,7 +70,7 @@ class _Collector:
         for x in old.order:
             self._visit(x)
         results = tuple(self._build(x) for x in old.results)
-        return Program(self.graph, old.inputs, old.outputs, results)
+        return Program(self.graph, old.inputs, old.outputs, results, placed_first=False)
 
     def _visit(self, x: int) -> None:
         """The form of a node; what is finished, or no sum of known monomials, becomes a node of its own."""
