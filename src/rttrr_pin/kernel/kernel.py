@@ -143,7 +143,8 @@ class Kernel:
             InputError: an argument is missing, or too many, or `out` is no float64 array that can be written.
         """
         one = self._one  # on this thread
-        if one is not None and payload is None and threads in (None, 1) and threads is not True and one(q, v, a, out):
+        alone = threads is None or (type(threads) is int and threads == 1)
+        if one is not None and payload is None and alone and one(q, v, a, out):
             return out
         _check_threads(threads)
         variant_loads = self._loads(payload)
