@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +55,15 @@ def batch_shape(arrays: Sequence[Array], loads: Sequence[Load]) -> tuple[int, ..
     for load in loads:
         named[f"payload force at link {load.link + 1}"] = load.f.shape[:-1]
         named[f"payload moment at link {load.link + 1}"] = load.n.shape[:-1]
+    return common_shape(named)
+
+
+def common_shape(named: Mapping[str, tuple[int, ...]]) -> tuple[int, ...]:
+    """The shape that leading axes, by the name of their array, broadcast to.
+
+    Raises:
+        ShapeError: they do not.
+    """
     try:
         return np.broadcast_shapes(*named.values())
     except ValueError:

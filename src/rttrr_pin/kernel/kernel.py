@@ -15,14 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rttrr_pin.arithmetic import Load
+from rttrr_pin.batch import common_shape
 from rttrr_pin.errors import InputError, NumberError, ShapeError, UnknownNameError
 from rttrr_pin.kernel import cache, emit, threads
 from rttrr_pin.kernel.build import STRAIGHT_LINE, build
 from rttrr_pin.kernel.emit import Emitter, Executable, emitter
-from rttrr_pin.kernel.program import Field, Program
+from rttrr_pin.kernel.program import Field, Program, Widths
 from rttrr_pin.kernel.quantities import QUANTITIES
-from rttrr_pin.kernel.simplify import simplify
-from rttrr_pin.kernel.trace import PayloadSlot, fields, outputs_of, trace
+from rttrr_pin.kernel.trace import PayloadSlot, fields, outputs_of
 from rttrr_pin.model import Joint, Model
 from rttrr_pin.model.inputs import Coordinates, check_quaternions, coordinates, finite
 
@@ -36,7 +36,7 @@ LoadOf = Callable[[Any], list[Load]]
 
 
 @dataclass(frozen=True)
-class Variant:
+class Variant(Widths):
     """The program for payloads at given links, loaded.
 
     Attributes:
@@ -92,7 +92,9 @@ class Kernel:
     @cached_property
     def program(self) -> Program:
         """The straight-line program (without payload), with the count of its operations."""
-        return simplify(trace(self.model, self.outputs))
+        program = build(self.model, self.outputs, straight_line=None)
+        assert isinstance(program, Program)
+        return program
 
     def source(self, emitter: str = "c") -> str:
         """The program (without payload) as a source file, to carry the dynamics elsewhere.
@@ -150,7 +152,7 @@ class Kernel:
         variant_loads = self._loads(payload)
         arrays = self._arrays(q, v, a)
         loads = {f"payload_{k}_{name}": getattr(load, name) for k, load in enumerate(variant_loads) for name in "fn"}
-        batch = _batch_shape(arrays | loads)
+        batch = common_shape({name: x.shape[:-1] for name, x in (arrays | loads).items()})
         rows = prod(batch)
         inputs = [_rows(x, batch, rows) for x in (*arrays.values(), *loads.values())]
         variant = self._variant(tuple(PayloadSlot(load.link, load.in_base) for load in variant_loads))
@@ -223,7 +225,8 @@ class Kernel:
     ) -> tuple[list[Array], list[Array]]:
         """For each output the rows to write, and the array to return."""
         given = self._given(out)
-        targets, results = [], []
+        targets: list[Array] = []
+        results: list[Array] = []
         for field in variant.outputs:
             shape = (*batch, *field.shape)
             mine = given.get(field.name)
@@ -233,9 +236,11 @@ class Kernel:
             target = None if mine is None or elsewhere else _view(mine, rows, field.width)
             if target is None:
                 target = np.empty((rows, field.width))
-            for name in [name for name in given if mine is not None and name != field.name]:
-                if isinstance(given[name], np.ndarray) and np.shares_memory(mine, given[name]):
-                    raise InputError(f"out for {field.name} and {name} share memory: pass an array of its own for each")
+            for other, result in zip(self.outputs, results, strict=False):  # those before it
+                if mine is not None and np.shares_memory(mine, result):
+                    raise InputError(
+                        f"out for {other} and {field.name} share memory: pass an array of its own for each"
+                    )
             targets.append(target)
             results.append(target.reshape(shape) if mine is None else mine)
         return targets, results
@@ -253,7 +258,7 @@ class Kernel:
         self, variant: Variant, inputs: Sequence[Any], targets: Sequence[Array], rows: int, wanted: int | None
     ) -> bool:
         task = variant.executable.bind(inputs, targets)
-        numbers = rows * sum(field.width for field in variant.inputs + variant.outputs)
+        numbers = rows * (variant.width_in + variant.width_out)
         return threads.run(task, rows, threads.count(wanted, numbers))
 
     def _returned(self, results: Sequence[Array], targets: Sequence[Array], out: Any) -> Any:
@@ -335,19 +340,6 @@ def _readable(x: Any, width: int) -> bool:
     if type(x) is not np.ndarray or x.dtype not in (np.float64, np.float32) or not x.flags.aligned:
         return False
     return bool(x.dtype.isnative and x.ndim and x.shape[-1] == width)
-
-
-def _batch_shape(arrays: Mapping[str, NDArray[Any]]) -> tuple[int, ...]:
-    try:
-        return np.broadcast_shapes(*(x.shape[:-1] for x in arrays.values()))
-    except ValueError:
-        shapes = ", ".join(f"{name}: {x.shape[:-1]}" for name, x in arrays.items())
-        raise ShapeError(
-            f"the leading axes do not broadcast ({shapes}): give all the same batch shape",
-            name="q, v, a",
-            got=(),
-            wanted="leading axes that broadcast",
-        ) from None
 
 
 def _rows(x: NDArray[Any], batch: tuple[int, ...], rows: int) -> NDArray[Any]:

@@ -59,8 +59,25 @@ class Operations:
         )
 
 
+class Widths:
+    """What has input and output arrays."""
+
+    inputs: tuple[Field, ...]
+    outputs: tuple[Field, ...]
+
+    @property
+    def width_in(self) -> int:
+        """The count of numbers that one state brings."""
+        return sum(field.width for field in self.inputs)
+
+    @property
+    def width_out(self) -> int:
+        """The count of numbers that one state yields."""
+        return sum(field.width for field in self.outputs)
+
+
 @dataclass(frozen=True, eq=False)
-class Program:
+class Program(Widths):
     """A robot's program.
 
     Attributes:
@@ -93,16 +110,6 @@ class Program:
             if x in self.graph.kept or any(y in behind for y in args):
                 behind.add(x)
         return tuple(sorted(nodes, key=lambda x: (x in behind, x)))
-
-    @property
-    def width_in(self) -> int:
-        """The count of numbers that one state brings."""
-        return sum(field.width for field in self.inputs)
-
-    @property
-    def width_out(self) -> int:
-        """The count of numbers that one state yields."""
-        return sum(field.width for field in self.outputs)
 
     @cached_property
     def unread(self) -> tuple[int, ...]:

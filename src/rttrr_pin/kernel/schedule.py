@@ -14,7 +14,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.kernel.program import Field, Program, inputs_of
+from rttrr_pin.kernel.program import Field, Program, Widths, inputs_of
 
 Array = NDArray[np.float64]
 
@@ -57,7 +57,7 @@ class Call:
 
 
 @dataclass(frozen=True, eq=False)
-class Schedule:
+class Schedule(Widths):
     """A robot's program as calls.
 
     Attributes:
@@ -75,16 +75,6 @@ class Schedule:
     outputs: tuple[Field, ...]
     between: int
     unread: tuple[int, ...]
-
-    @property
-    def width_in(self) -> int:
-        """The count of numbers that one state brings."""
-        return sum(field.width for field in self.inputs)
-
-    @property
-    def width_out(self) -> int:
-        """The count of numbers that one state yields."""
-        return sum(field.width for field in self.outputs)
 
     @property
     def columns(self) -> int:

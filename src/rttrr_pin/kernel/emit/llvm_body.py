@@ -119,7 +119,7 @@ def body(program: Program, layout: Layout) -> tuple[str, int]:
 
 def _fill(program: Program, layout: Layout) -> Iterator[str]:
     """The function `void fill(ptr out, i64 m)`: what no state changes, written once for all blocks."""
-    graph, lines = program.graph, Lines(layout.lanes)
+    graph = program.graph
     still = [(place, x) for place, x in enumerate(program.results) if graph.op[x] is Op.CONSTANT]
     parts = [still[start : start + SEGMENT] for start in range(0, len(still), SEGMENT)]
     for k, part in enumerate(parts):
@@ -194,17 +194,30 @@ def _segment(program: Program, layout: Layout, k: int, part: list[int], passed: 
 
 
 def _loop(name: str, lines: Lines, last: str) -> str:
-    """A function that does the lines for m states, so many at a time; the label of their last block."""
-    arguments = "ptr noalias %in, ptr noalias %out, ptr noalias %between, i64 %m"
+    """A function that does the lines for m states; %q, %o and %b are where these have their columns."""
+    lines.text[:0] = [f"  %{at} = getelementptr double, ptr %{base}, i64 %i" for at, base in COLUMNS]
+    return loop(name, "ptr noalias %in, ptr noalias %out, ptr noalias %between", lines, last)
+
+
+COLUMNS = (("q", "in"), ("o", "out"), ("b", "between"))
+"""Addresses at the present states, and of what."""
+
+
+def loop(name: str, arguments: str, lines: Lines, last: str) -> str:
+    """A function that does lines for m states, LANES at a time.
+
+    Args:
+        name: of the function.
+        arguments: all but the last, m.
+        lines: what is done for the states from %i on.
+        last: the label of their last basic block.
+    """
     text = "\n".join(lines.text)
-    return f"""define internal void @{name}({arguments}) noinline {{
+    return f"""define internal void @{name}({arguments}, i64 %m) noinline {{
 start:
   br label %loop
 loop:
   %i = phi i64 [ 0, %start ], [ %next, %{last} ]
-  %q = getelementptr double, ptr %in, i64 %i
-  %o = getelementptr double, ptr %out, i64 %i
-  %b = getelementptr double, ptr %between, i64 %i
 {text}
   %next = add i64 %i, {lines.lanes}
   %more = icmp ult i64 %next, %m

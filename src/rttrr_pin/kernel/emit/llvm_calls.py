@@ -13,7 +13,7 @@ import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from rttrr_pin.kernel.emit.llvm_body import Layout, Lines, VectorCode, declarations
+from rttrr_pin.kernel.emit.llvm_body import Layout, Lines, VectorCode, declarations, loop
 from rttrr_pin.kernel.expression import LEAVES
 from rttrr_pin.kernel.schedule import Schedule, Step
 
@@ -85,21 +85,8 @@ def _step(step: Step, layout: Layout, k: int) -> str:
     values = [code.get(x) for x in program.results]
     for entry, value in enumerate(values, len(step.columns)):
         lines.do(f"store {lines.vector} {value}, ptr {code.address(entry)}, align 8")
-    text = "\n".join(lines.text)
-    return f"""define internal void @step_{k}(ptr %in, ptr %row, ptr %numbers, i64 %m) noinline {{
-start:
-  br label %loop
-loop:
-  %i = phi i64 [ 0, %start ], [ %next, %{code.label} ]
-  %q = getelementptr double, ptr %in, i64 %i
-{text}
-  %next = add i64 %i, {layout.lanes}
-  %more = icmp ult i64 %next, %m
-  br i1 %more, label %loop, label %done
-done:
-  ret void
-}}
-"""
+    lines.text.insert(0, "  %q = getelementptr double, ptr %in, i64 %i")
+    return loop(f"step_{k}", "ptr %in, ptr %row, ptr %numbers", lines, code.label)
 
 
 def _body(schedule: Schedule) -> str:

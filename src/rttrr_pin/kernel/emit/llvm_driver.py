@@ -123,7 +123,7 @@ class _Block:
     @contextmanager
     def scratch(self, w: Writer, without: ir.Block) -> Iterator[list[ir.Value]]:
         """Memory for columns: of the inputs, the outputs, and what is passed between parts, one behind the other."""
-        widths = (_columns(self.program.inputs), _columns(self.program.outputs), self.between)
+        widths = (self.program.width_in, self.program.width_out, self.between)
         sizes = [width * self.layout.pitch * 8 for width in widths]
         total = max(sum(sizes), 8)
         held = None
@@ -145,7 +145,7 @@ class _Block:
             self._gather(w, array, [array.base, array.row, array.column, number(field.width), at, m])
         padded = self.padded(b, m)
         b.call(self.body, [inputs, outputs, between, padded])
-        bad = b.call(self.unsound, [outputs, number(_columns(self.program.outputs)), padded])
+        bad = b.call(self.unsound, [outputs, number(self.program.width_out), padded])
         for place, following in _runs(self.program.unread):
             column = w.offset(inputs, place * self.layout.pitch * 8)
             bad = b.or_(bad, b.call(self.unsound, [column, number(following), padded]))
@@ -175,10 +175,6 @@ class _Block:
         for array, field in zip(arrays, fields, strict=True):
             yield array, field, w.offset(base, before * self.layout.pitch * 8)
             before += field.width
-
-
-def _columns(fields: Sequence[Field]) -> int:
-    return sum(field.width for field in fields)
 
 
 def _runs(places: Sequence[int]) -> Iterator[tuple[int, int]]:
