@@ -1,0 +1,80 @@
+"""Symbols of closed forms: what each is called in Python and in LaTeX, what it stands for, and its dimension."""
+
+from __future__ import annotations
+
+import enum
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import NamedTuple
+
+Factors = tuple[tuple[str, int], ...]
+"""Names of symbols with their exponents, none of them 0, sorted by name."""
+
+Terms = dict[Factors, Fraction]
+"""A polynomial: the coefficient of each product of symbols, none of them 0."""
+
+
+class Dimension(NamedTuple):
+    """Exponents of length, mass and time; an angle has none."""
+
+    length: int = 0
+    mass: int = 0
+    time: int = 0
+
+    def times(self, other: Dimension, power: int = 1) -> Dimension:
+        """The dimension of a product, self other^power."""
+        return Dimension(*(mine + power * theirs for mine, theirs in zip(self, other, strict=True)))
+
+    def __str__(self) -> str:
+        units = zip(("m", "kg", "s"), self, strict=True)
+        return " ".join(unit if power == 1 else f"{unit}^{power}" for unit, power in units if power) or "1"
+
+
+NUMBER = Dimension()
+LENGTH = Dimension(length=1)
+MASS = Dimension(mass=1)
+INERTIA = Dimension(length=2, mass=1)
+ACCELERATION = Dimension(length=1, time=-2)
+FORCE = Dimension(length=1, mass=1, time=-2)
+MOMENT = Dimension(length=2, mass=1, time=-2)
+
+
+class Role(enum.StrEnum):
+    """What a symbol stands for."""
+
+    COORDINATE = "coordinate"
+    RATE = "rate"
+    ACCELERATION = "acceleration"
+    COSINE = "cosine"
+    SINE = "sine"
+    SIGN = "sign"
+    GRAVITY = "gravity"
+    PAYLOAD = "payload"
+    PARAMETER = "parameter"
+    STEP = "step"
+    UNKNOWN = "unknown"
+
+
+@dataclass(frozen=True, slots=True)
+class Symbol:
+    """One letter of a closed form.
+
+    Attributes:
+        name: an identifier, for Python, C and the terms of a polynomial.
+        latex: how the paper's letters have it.
+        role: what it stands for.
+        dimension: in length, mass and time.
+        index: of a coordinate, rate, acceleration or sign, its place in q, v or a, from 1; of a cosine or sine, that
+            of the angle; else 0.
+    """
+
+    name: str
+    latex: str
+    role: Role
+    dimension: Dimension = NUMBER
+    index: int = 0
+
+
+def factors_of(exponents: dict[str, int]) -> Factors:
+    """Exponents by name as the key of a term."""
+    return tuple(sorted((name, power) for name, power in exponents.items() if power))
