@@ -151,6 +151,7 @@ def dynamics(
     a: Sequence[Scalar],
     payloads: Sequence[Payload] = (),
     links: Sequence[Body] | None = None,
+    gravity: Vector | None = None,
 ) -> Result:
     """The specification on scalars.
 
@@ -162,12 +163,14 @@ def dynamics(
         a: a scalar for each acceleration.
         payloads: what the robot exerts on its surroundings.
         links: bodies to take instead of the model's own.
+        gravity: field to take instead of the model's own.
 
     Returns:
         The five quantities in scalars of that kind; what no state changes may be a plain number.
     """
     states = _joint_states(model, arithmetic, q, v, a)
-    gravity = Vector.of(model.gravity, lambda value: arithmetic.number(value, 0.0))
+    if gravity is None:
+        gravity = Vector.of(model.gravity, lambda value: arithmetic.number(value, 0.0))
     parents = [joint.parent for joint in model.joints]
     sincos, keep, call = arithmetic.sincos, arithmetic.keep, arithmetic.call
     result = newton_euler(links or bodies(model, arithmetic), parents, states, gravity, payloads, sincos, keep, call)
