@@ -104,6 +104,19 @@ class UrdfError(RttrrError):
         super().__init__(f"{where}: {element + ': ' if element else ''}{message}")
 
 
+class EquationError(RttrrError):
+    """A file of equations cannot be used.
+
+    Attributes:
+        source: the file's name.
+        place: the entry at fault, such as `equation 13` or `[[link]] number 2`; empty where it is the whole file.
+    """
+
+    def __init__(self, message: str, *, source: str, place: str = "") -> None:
+        self.source, self.place = source, place
+        super().__init__(f"{source}: {place + ': ' if place else ''}{message}")
+
+
 class OracleError(RttrrError):
     """A library that serves as an oracle is missing, or cannot take this robot."""
 

@@ -1,0 +1,271 @@
+"""A publication: its equations as printed, the symbols and frames that they assume, and the robot they are about."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+from rttrr_pin.paper.arm import LINK_KEYS, read_robot
+from rttrr_pin.paper.latex import Vocabulary, read_latex
+from rttrr_pin.paper.match import as_terms
+from rttrr_pin.paper.printed import Split
+from rttrr_pin.paper.python import read_python
+from rttrr_pin.paper.tables import Table, read_table
+from rttrr_pin.paper.templates import filled, symbols_of
+from rttrr_pin.symbolic.chain import SymbolicRobot
+from rttrr_pin.symbolic.symbols import Symbol, Terms
+
+DATA = Path(__file__).parent / "data"
+RTTRR = DATA / "rttrr_2016_conventions.toml"
+"""The paper that this package starts from."""
+
+FILE_KEYS = (
+    *("title", "source", "language", "equations", "robot", "payload", "link", "symbol", "coordinates", "values"),
+    *("equation", "convention"),
+)
+EQUATION_KEYS = ("number", "line", "quantity", "link", "joint", "components", "latex", "python")
+
+VECTORS, SCALARS = ("vC", "F", "N", "f", "n"), ("tau",)
+"""Quantities of a link, and of a joint."""
+
+DEFINITION = "definition"
+"""The quantity of an equation that only says what letters mean."""
+
+COORDINATES: Mapping[str, tuple[str, str, str]] = {
+    "latex": ("q_<k>", r"\dot{q}_<k>", r"\ddot{q}_<k>"),
+    "python": ("q<k>", "qd<k>", "qdd<k>"),
+}
+"""How coordinates, rates and accelerations are spelled unless [coordinates] says otherwise."""
+
+
+@dataclass(frozen=True, slots=True)
+class Equation:
+    """One numbered equation.
+
+    Attributes:
+        number: as printed.
+        quantity: vC, F, N, f, n, tau; or "definition".
+        place: index of the link, or of the joint for tau; -1 for a definition.
+        components: which axes, such as "xyz" or "z"; empty for a scalar.
+        texts: the text as printed, whole, or one for each component.
+        line: where it starts in the published text; 0 where that is not known.
+    """
+
+    number: int | str
+    quantity: str
+    place: int
+    components: str
+    texts: tuple[str, ...]
+    line: int = 0
+
+    @property
+    def names(self) -> list[str]:
+        """Its components as reports name them: F5z, tau2."""
+        if self.quantity == DEFINITION:
+            return []
+        return [f"{self.quantity}{self.place + 1}{axis}" for axis in self.components or ("",)]
+
+
+@dataclass(frozen=True, slots=True)
+class Convention:
+    """What the text leaves to the reader, and how it is read.
+
+    Attributes:
+        title: what it is about.
+        text: how it is read.
+        equations: the numbers of the equations that it concerns.
+        flip: letters that have the other sign in the other way to read it; empty where there is no other way to try.
+    """
+
+    title: str
+    text: str
+    equations: tuple[int | str, ...] = ()
+    flip: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Publication:
+    """Equations with all that they assume.
+
+    Attributes:
+        title: of the publication.
+        source: where it was published.
+        language: "latex" or "python".
+        robot: the robot in its letters.
+        spellings: the name of the symbol that each spelling stands for.
+        equations: as printed, in order.
+        conventions: what the text leaves to the reader.
+    """
+
+    title: str
+    source: str
+    language: str
+    robot: SymbolicRobot
+    spellings: Mapping[str, str]
+    equations: tuple[Equation, ...]
+    conventions: tuple[Convention, ...]
+
+    @cached_property
+    def vocabulary(self) -> Vocabulary:
+        """The spellings as the LaTeX reader looks them up."""
+        return Vocabulary(self.spellings)
+
+    def read(self, equation: Equation) -> tuple[Split, ...]:
+        """The terms of an equation; several ways where its text does not show where components end."""
+        count = max(1, len(equation.components))
+        if self.language == "latex" and len(equation.texts) == 1:
+            return read_latex(equation.texts[0], self.vocabulary, count)
+        if self.language == "latex":
+            one = [read_latex(text, self.vocabulary, 1)[0].components[0] for text in equation.texts]
+            return (Split(tuple(one)),)
+        return (Split(tuple(read_python(text, self.spellings) for text in equation.texts)),)
+
+
+def read_publication(path: Path = RTTRR) -> Publication:
+    """A file of equations, TOML or YAML, with its robot, symbols and conventions.
+
+    Args:
+        path: the file; without one, the paper on RTTRR.
+
+    Returns:
+        The publication.
+
+    Raises:
+        EquationError: the file cannot be used; it says where and why.
+        UrdfError: its URDF cannot be used.
+    """
+    file = read_table(path).only(FILE_KEYS)
+    language = file.get("language", str, "latex")
+    if language not in COORDINATES:
+        raise file.error(f"language is {language!r}: expected {' or '.join(COORDINATES)}")
+    links = sum("mass" in link.entries for link in file.tables("link"))
+    symbols: dict[str, Symbol] = {}
+    spellings: dict[str, str] = {}
+    for table in file.tables("symbol", "[[symbol]]"):
+        for symbol, printed in symbols_of(table, links):
+            if symbol.name in symbols:
+                raise table.error(f"symbol {symbol.name!r} is declared twice: leave one")
+            symbols[symbol.name] = symbol
+            spellings |= dict.fromkeys(printed, symbol.name)
+    robot = read_robot(file, list(symbols.values()), _expression(symbols), _finder(path))
+    spellings |= _moving(file, robot, language)
+    return Publication(
+        title=file.get("title", str, path.stem),
+        source=file.get("source", str, path.name),
+        language=language,
+        robot=robot,
+        spellings=spellings,
+        equations=tuple(_equations(file, path, robot, language)),
+        conventions=tuple(_conventions(file, symbols)),
+    )
+
+
+def _expression(symbols: Mapping[str, Symbol]) -> Callable[[Table, str], Terms]:
+    """Reads expressions in the letters, such as `-J_1xy` or `l_1/2`."""
+    names = {name: name for name in symbols}
+
+    def read(table: Table, text: str) -> Terms:
+        component = read_python(text, names)
+        if component.unparsed:
+            raise table.error(f"{text!r} cannot be read: {component.unparsed}")
+        readings = [term.readings[0] for term in component.terms]
+        unknown = [name for reading in readings for name in reading.unknown]
+        if unknown:
+            raise table.error(f"{text!r} has {unknown[0]!r}, which is no symbol: declare it in [[symbol]]")
+        return as_terms((reading.coefficient, reading.factors) for reading in readings)
+
+    return read
+
+
+def _finder(path: Path) -> Callable[[str], str]:
+    """A URDF is looked for beside the file first; otherwise the name is what `load` takes."""
+
+    def find(name: str) -> str:
+        beside = path.parent / name
+        return str(beside) if beside.is_file() else name
+
+    return find
+
+
+def _moving(file: Table, robot: SymbolicRobot, language: str) -> dict[str, str]:
+    """The spellings of coordinates, rates and accelerations."""
+    table = file.table("coordinates").only(("position", "velocity", "acceleration"))
+    usual = COORDINATES[language]
+    spellings = {}
+    for key, letter, default, count in zip(
+        ("position", "velocity", "acceleration"),
+        "qva",
+        usual,
+        (robot.model.nq, robot.model.nv, robot.model.nv),
+        strict=True,
+    ):
+        for template in table.texts(key, default=[default]):
+            for k in range(1, count + 1):
+                spellings[filled(template, {"k": str(k)}, latex=language == "latex")] = f"{letter}_{k}"
+    return spellings
+
+
+def _equations(file: Table, path: Path, robot: SymbolicRobot, language: str) -> list[Equation]:
+    """The equations, which may stand in a file of their own."""
+    place = file.get("equations", str, "")
+    tables = file.tables("equation", "equation")
+    if place:
+        tables += read_table(path.parent / place).only(("equation",)).tables("equation", "equation")
+    if not tables:
+        raise file.error("holds no [[equation]]: add one for each equation")
+    found = [_equation(table, robot, language) for table in tables]
+    names: dict[str, int | str] = {}
+    for table, equation in zip(tables, found, strict=True):
+        for name in equation.names:
+            if name in names:
+                raise table.error(f"states {name}, as equation {names[name]} does: leave one")
+            names[name] = equation.number
+    return found
+
+
+def _equation(table: Table, robot: SymbolicRobot, language: str) -> Equation:
+    table.only(EQUATION_KEYS)
+    number = table.entries.get("number", table.place.removeprefix("equation "))
+    texts = tuple(table.texts(language))
+    line = table.get("line", int, 0)
+    quantity = table.get("quantity", str)
+    if quantity == DEFINITION:
+        return Equation(number, quantity, -1, "", texts, line)
+    if quantity in VECTORS:
+        axes = table.get("components", str, "xyz")
+        if not axes or any(axis not in "xyz" for axis in axes) or len(set(axes)) < len(axes):
+            raise table.error(f"components is {axes!r}: expected xyz, or some of them")
+        if len(texts) not in (1, len(axes)):
+            raise table.error(f"has {len(texts)} texts for {len(axes)} components: give one for each, or one in all")
+        return Equation(number, quantity, _place(table, "link", robot.model.link_names), axes, texts, line)
+    if quantity in SCALARS:
+        return Equation(number, quantity, _place(table, "joint", robot.model.v_names), "", texts, line)
+    raise table.error(f"quantity is {quantity!r}: expected {', '.join((*VECTORS, *SCALARS))} or {DEFINITION}")
+
+
+def _place(table: Table, key: str, names: Sequence[str]) -> int:
+    """Which link or joint, by number from 1 or by name."""
+    value = table.entries.get(key)
+    if isinstance(value, str) and value in names:
+        return names.index(value)
+    if isinstance(value, int) and 1 <= value <= len(names):
+        return value - 1
+    raise table.error(f"{key} is {value!r}: expected 1 to {len(names)}, or one of {', '.join(names)}")
+
+
+def _conventions(file: Table, symbols: Mapping[str, Symbol]) -> list[Convention]:
+    found = []
+    for table in file.tables("convention", "[[convention]]"):
+        table.only(("title", "text", "equations", "flip"))
+        flip = table.texts("flip", default=())
+        unknown = [name for name in flip if name not in symbols]
+        if unknown:
+            raise table.error(f"flip names {unknown[0]!r}, which is no symbol: use names of [[symbol]]")
+        numbers = tuple(table.get("equations", list, []))
+        found.append(Convention(table.get("title", str), table.get("text", str), numbers, tuple(flip)))
+    return found
+
+
+__all__ = ["LINK_KEYS", "RTTRR", "Convention", "Equation", "Publication", "read_publication"]

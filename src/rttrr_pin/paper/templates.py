@@ -1,0 +1,72 @@
+"""Symbols by the dozen: `{}^<i>r_{C_{<i><x>}}` stands for that of every link and axis."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
+
+from rttrr_pin.paper.tables import Table
+from rttrr_pin.symbolic.symbols import ACCELERATION, FORCE, INERTIA, LENGTH, MASS, MOMENT, NUMBER, Dimension, Role, Symbol
+
+DIMENSIONS: Mapping[str, Dimension] = {
+    "number": NUMBER,
+    "angle": NUMBER,
+    "length": LENGTH,
+    "mass": MASS,
+    "inertia": INERTIA,
+    "acceleration": ACCELERATION,
+    "force": FORCE,
+    "moment": MOMENT,
+}
+"""What a symbol may measure."""
+
+AXES, PAIRS = ("x", "y", "z"), ("xy", "xz", "yz")
+
+KEYS = ("name", "latex", "dimension", "i", "k", "value")
+
+
+def symbols_of(table: Table, links: int) -> Iterator[tuple[Symbol, tuple[str, ...]]]:
+    """The symbols that an entry of [[symbol]] stands for, each with its spellings.
+
+    Args:
+        table: the entry.
+        links: how many links `<i>` runs over.
+
+    Raises:
+        EquationError: the entry lacks a name or has a dimension that does not exist.
+    """
+    table.only(KEYS)
+    name = table.get("name", str)
+    spellings = table.texts("latex", default=[name])
+    dimension = table.get("dimension", str)
+    if dimension not in DIMENSIONS:
+        raise table.error(f"dimension is {dimension!r}: expected {', '.join(DIMENSIONS)}")
+    for values in _combinations(table, (name, *spellings), links):
+        identifier = filled(name, values)
+        if not identifier.isidentifier():
+            raise table.error(f"name is {identifier!r}: expected letters, digits and _, such as r_C1x")
+        printed = tuple(dict.fromkeys(filled(spelling, values, latex=True) for spelling in spellings))
+        yield Symbol(identifier, printed[0], Role.PARAMETER, DIMENSIONS[dimension]), printed
+
+
+def _combinations(table: Table, texts: Sequence[str], links: int) -> Iterator[dict[str, str]]:
+    """All values of the placeholders that occur."""
+    ranges: dict[str, Sequence[str]] = {
+        "i": [str(i) for i in table.get("i", list, list(range(1, links + 1)))],
+        "k": [str(k) for k in table.get("k", list, [])],
+        "x": AXES,
+        "xy": PAIRS,
+    }
+    used = [key for key in ranges if any(f"<{key}>" in text or f"<{key[::-1]}>" in text for text in texts)]
+    for values in product(*(ranges[key] for key in used)):
+        yield dict(zip(used, values, strict=True))
+
+
+def filled(text: str, values: Mapping[str, str], latex: bool = False) -> str:
+    """A template with values for its placeholders; in LaTeX, numbers of several digits get braces."""
+    for key, value in values.items():
+        shown = f"{{{value}}}" if latex and value.isdigit() and len(value) > 1 else value
+        text = text.replace(f"<{key}>", shown)
+        if len(key) > 1:
+            text = text.replace(f"<{key[::-1]}>", value[::-1])
+    return text
