@@ -19,8 +19,9 @@ from numpy.typing import NDArray
 
 from rttrr_pin.kernel.emit import Array, Task
 from rttrr_pin.kernel.emit.fastcall import python_call, python_function
-from rttrr_pin.kernel.emit.llvm_body import Layout, body
+from rttrr_pin.kernel.emit.llvm_body import body
 from rttrr_pin.kernel.emit.llvm_calls import calls
+from rttrr_pin.kernel.emit.llvm_vectors import Layout
 from rttrr_pin.kernel.program import Field, Program
 from rttrr_pin.kernel.schedule import Schedule
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from llvmlite import ir
 
-from rttrr_pin.kernel.emit.llvm_body import Layout
+from rttrr_pin.kernel.emit.llvm_vectors import Layout
 
 I64, F64, F32, PTR, I1 = ir.IntType(64), ir.DoubleType(), ir.FloatType(), ir.PointerType(), ir.IntType(1)
 I32 = ir.IntType(32)

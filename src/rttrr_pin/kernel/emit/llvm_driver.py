@@ -19,7 +19,6 @@ from itertools import combinations, groupby, product
 from llvmlite import ir
 
 from rttrr_pin.kernel.emit.layout import ALIGNED, C_CONTIGUOUS, NDARRAY, TUPLE, WRITEABLE
-from rttrr_pin.kernel.emit.llvm_body import Layout
 from rttrr_pin.kernel.emit.llvm_columns import (
     F32,
     F64,
@@ -36,6 +35,7 @@ from rttrr_pin.kernel.emit.llvm_columns import (
     unsound,
     untyped,
 )
+from rttrr_pin.kernel.emit.llvm_vectors import Layout
 from rttrr_pin.kernel.program import Field, Program
 from rttrr_pin.kernel.schedule import Schedule
 
