@@ -75,6 +75,12 @@ class Writer:
         b = self.builder
         return b.inttoptr(b.and_(b.add(b.ptrtoint(address, I64), number(LINE - 1)), number(-LINE)), PTR)
 
+    def require(self, condition: ir.Value, otherwise: ir.Block) -> None:
+        """Go on where the condition holds."""
+        on = self.builder.append_basic_block("on")
+        self.builder.cbranch(condition, on, otherwise)
+        self.builder.position_at_end(on)
+
     def least(self, x: ir.Value, y: ir.Value) -> ir.Value:
         """The smaller of two."""
         return self.builder.select(self.builder.icmp_signed("<", x, y), x, y)
