@@ -40,7 +40,7 @@ def load(
         ShapeError, NumberError: gravity is no vector of three finite numbers.
         InputError: the source is of another type, an extra is missing, or base is neither "fixed" nor "floating".
     """
-    from rttrr_pin.model.urdf import read_urdf  # loads yourdfpy, which takes a second
+    from rttrr_pin.model.urdf import read_urdf  # loads yourdfpy, which takes long
 
     field = vectors("gravity", gravity)
     if field.ndim != 1:

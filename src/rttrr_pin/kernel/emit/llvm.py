@@ -1,7 +1,7 @@
 """Machine code for this processor by LLVM, through llvmlite, the part of Numba that compiles.
 
 Straight from the program to LLVM's assembly: vectors of states are written as vectors, so that nothing is left to the
-luck of an optimiser, and what takes Numba seconds, inferring types line by line, does not arise.
+luck of an optimiser, and what takes Numba long, inferring types line by line, does not arise.
 """
 
 from __future__ import annotations
