@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rttrr_pin.kernel.cost import fused
 from rttrr_pin.kernel.emit import emitter
-from rttrr_pin.kernel.emit.llvm_body import Lines, polynomials
+from rttrr_pin.kernel.emit.llvm_vectors import Lines, polynomials
 from rttrr_pin.kernel.expression import Graph
 from rttrr_pin.kernel.program import Field, Program
 

@@ -20,8 +20,8 @@ STRAIGHT_LINE = 20_000
 """Operations, as traced, beyond which a program is made of calls: straight lines would take seconds to compile."""
 
 NODES = 3
-"""Nodes that the tracer records for each operation that an output needs, at most: 1.8 in chains about any axes, 2.9 in
-the RTTRR arm, most of whose numbers are zero. A robot with more is not traced to its end."""
+"""Nodes that the tracer may record for each operation that an output needs: more than it does in chains about any axes,
+and in the RTTRR arm, most of whose numbers are zero. A robot with more is not traced to its end."""
 
 LONGEST = 4_000_000
 """Nodes of what cannot be made of calls: beyond it, compiling takes more minutes and memory than anyone has."""

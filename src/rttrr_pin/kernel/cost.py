@@ -1,8 +1,8 @@
 """What a program costs a processor: instructions, and values that do not stay in its registers.
 
 Operations alone mislead: a product shared by ten sums saves nine multiplications and costs a store and ten loads if it
-finds no register meanwhile. Measured, collecting sums made RTTRR 6 percent faster and Talos 13 percent slower, and so
-says the estimate; of UR5 and Panda it says slower where they were 3 to 5 percent faster.
+finds no register meanwhile. Collecting sums saves operations in RTTRR and in Talos (`benchmarks/operation_counts.py`),
+and yet makes the one faster and the other slower, as the estimate says; where both ways are close, it may err.
 """
 
 from __future__ import annotations

@@ -8,7 +8,6 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from math import prod
-from operator import itemgetter
 from typing import Any
 
 import numpy as np
@@ -16,20 +15,19 @@ from numpy.typing import NDArray
 
 from rttrr_pin.arithmetic import Load
 from rttrr_pin.batch import common_shape
-from rttrr_pin.errors import InputError, NumberError, ShapeError, UnknownNameError
+from rttrr_pin.errors import InputError, NumberError, UnknownNameError
 from rttrr_pin.kernel import cache, emit, threads
+from rttrr_pin.kernel.arrays import as_rows, check_out, readable, rows_in_place
 from rttrr_pin.kernel.build import STRAIGHT_LINE, build
 from rttrr_pin.kernel.emit import Emitter, Executable, emitter
 from rttrr_pin.kernel.program import Field, Program, Widths
 from rttrr_pin.kernel.quantities import QUANTITIES
+from rttrr_pin.kernel.shortcut import One, shortcut
 from rttrr_pin.kernel.trace import PayloadSlot, fields, outputs_of
 from rttrr_pin.model import Joint, Model
 from rttrr_pin.model.inputs import Coordinates, check_quaternions, coordinates, finite
 
 Array = NDArray[np.float64]
-
-One = Callable[..., bool | None]
-"""Computes one state; None where it declines what it was given."""
 
 LoadOf = Callable[[Any], list[Load]]
 """What a user passes as payload, as loads of links."""
@@ -154,7 +152,7 @@ class Kernel:
         loads = {f"payload_{k}_{name}": getattr(load, name) for k, load in enumerate(variant_loads) for name in "fn"}
         batch = common_shape({name: x.shape[:-1] for name, x in (arrays | loads).items()})
         rows = prod(batch)
-        inputs = [_rows(x, batch, rows) for x in (*arrays.values(), *loads.values())]
+        inputs = [as_rows(x, batch, rows) for x in (*arrays.values(), *loads.values())]
         variant = self._variant(tuple(PayloadSlot(load.link, load.in_base) for load in variant_loads))
         targets, results = self._targets(variant, out, batch, rows, inputs)
         if rows and self._run(variant, inputs, targets, rows, threads):
@@ -179,7 +177,7 @@ class Kernel:
                     f"{name} {what}: {', '.join(self.outputs)} depend on {', '.join(self._inputs)}; pass these"
                 )
             if x is not None:
-                arrays[name] = x if _readable(x, self._widths[name]) else coordinates(name, x, self.model.moving)
+                arrays[name] = x if readable(x, self._widths[name]) else coordinates(name, x, self.model.moving)
         if self._floats and "q" in arrays:
             q = finite("q", np.asarray(arrays["q"], dtype=np.float64), _labels("q", self.model.moving))
             check_quaternions(q, self.model.moving)
@@ -194,7 +192,7 @@ class Kernel:
                 if found is None:
                     found = self._variants[slots] = self._compiled(slots)
                     if not slots and not self._floats:  # quaternions are looked at in Python
-                        self._one = _shortcut(found.executable.one, self._inputs, self.outputs, self._single)
+                        self._one = shortcut(found.executable.one, self._inputs, self.outputs, self._single)
                         self._answer_at_once(found.executable)
         return found
 
@@ -231,9 +229,9 @@ class Kernel:
             shape = (*batch, *field.shape)
             mine = given.get(field.name)
             if mine is not None:
-                _check_out(field.name, mine, shape)
+                check_out(field.name, mine, shape)
             elsewhere = mine is not None and any(np.may_share_memory(mine, x) for x in inputs)
-            target = None if mine is None or elsewhere else _view(mine, rows, field.width)
+            target = None if mine is None or elsewhere else rows_in_place(mine, rows, field.width)
             if target is None:
                 target = np.empty((rows, field.width))
             for other, result in zip(self.outputs, results, strict=False):  # those before it
@@ -288,32 +286,6 @@ class Kernel:
                 )
 
 
-def _shortcut(one: One | None, inputs: str, outputs: tuple[str, ...], single: bool) -> One | None:
-    """The executable's way to compute one state, as a function of (q, v, a, out); it returns None where it declines."""
-    if one is None or (single and inputs == "qva"):
-        return one
-    reads = [name in inputs for name in "qva"]
-
-    def shortcut(q: Any, v: Any, a: Any, out: Any) -> bool | None:
-        if [x is not None for x in (q, v, a)] != reads:
-            return None
-        return one(*(x for x in (q, v, a) if x is not None), out)
-
-    pick = itemgetter(*outputs) if len(outputs) > 1 else lambda out: (out[outputs[0]],)
-
-    def shortcut_to_several(q: Any, v: Any, a: Any, out: Any) -> bool | None:
-        if type(out) is not dict or len(out) != len(outputs):
-            return None
-        try:
-            return one(q, v, a, *pick(out))
-        except KeyError:  # said in words where all is checked
-            return None
-
-    if not single:
-        return shortcut_to_several if inputs == "qva" else None
-    return shortcut
-
-
 def fingerprint(model: Model) -> bytes:
     """Every number of a robot that a program can depend on."""
     parts: list[object] = [model.gravity.tobytes()]
@@ -333,40 +305,3 @@ def _labels(name: str, joints: Sequence[Joint]) -> list[str]:
 def _check_threads(wanted: int | None) -> None:
     """Also where nothing is to be computed."""
     threads.count(wanted, 0)
-
-
-def _readable(x: Any, width: int) -> bool:
-    """Whether compiled code can read an array where it lies; all else is checked, and copied if need be."""
-    if type(x) is not np.ndarray or x.dtype not in (np.float64, np.float32) or not x.flags.aligned:
-        return False
-    return bool(x.dtype.isnative and x.ndim and x.shape[-1] == width)
-
-
-def _rows(x: NDArray[Any], batch: tuple[int, ...], rows: int) -> NDArray[Any]:
-    """(N, width), without copying where strides can say it."""
-    if x.shape[:-1] != batch:
-        x = np.broadcast_to(x, (*batch, x.shape[-1]))
-    return x if x.ndim == 2 else x.reshape(rows, x.shape[-1])
-
-
-def _view(x: Array, rows: int, width: int) -> Array | None:
-    """(N, width) of the same memory, if there is such a view."""
-    if x.ndim == 2 and x.shape == (rows, width):
-        return x
-    return x.reshape(rows, width) if x.flags.c_contiguous else None
-
-
-def _check_out(name: str, x: Any, shape: tuple[int, ...]) -> None:
-    if not isinstance(x, np.ndarray) or x.dtype != np.float64 or not x.flags.aligned or not x.dtype.isnative:
-        kind = f"array of {x.dtype}" if isinstance(x, np.ndarray) else type(x).__name__
-        kind = f"misaligned {kind}" if isinstance(x, np.ndarray) and not x.flags.aligned else kind
-        raise InputError(f"out for {name} is a {kind}: expected a float64 array, such as np.empty({shape})")
-    if x.shape != shape:
-        raise ShapeError(
-            f"out for {name} has shape {x.shape}, expected {shape}: pass np.empty({shape})",
-            name="out",
-            got=x.shape,
-            wanted=str(shape),
-        )
-    if not x.flags.writeable:
-        raise InputError(f"out for {name} cannot be written: pass an array of your own, such as np.empty({shape})")

@@ -99,7 +99,7 @@ class Program(Widths):
         """The nodes that are needed, each behind what it takes.
 
         What depends on no finished vector, that is where the links are placed, comes first: compiled so, Panda and
-        Talos need 5 to 10 percent fewer instructions than link by link, as the specification has it.
+        Talos need fewer instructions than link by link, as the specification has it.
         """
         nodes = self.graph.reachable(self.results)
         if not self.placed_first:

@@ -68,7 +68,7 @@ def examples() -> dict[str, Path]:
     Raises:
         InputError: the package is not installed.
     """
-    from importlib import metadata  # a tenth of what importing this package takes
+    from importlib import metadata  # large, and of no use but for example robots
 
     try:
         files = metadata.files(EXAMPLES_PACKAGE) or []
@@ -184,7 +184,7 @@ def _folder(parts: tuple[str, ...]) -> str:
 
 
 def _is_yourdfpy(source: object) -> TypeGuard[Any]:
-    """Whether this is a `yourdfpy.URDF`; yourdfpy, which takes a second to load, is loaded already if so."""
+    """Whether this is a `yourdfpy.URDF`; yourdfpy, which takes long to load, is loaded already if so."""
     module = sys.modules.get("yourdfpy")
     return module is not None and isinstance(source, module.URDF)
 

@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Literal
 
 from rttrr_pin.errors import ModelMismatchError, RttrrError, UnknownNameError
+from rttrr_pin.loading import load
 from rttrr_pin.model.inputs import whole_number
 from rttrr_pin.oracles import ORACLES
-from rttrr_pin.robot import load
 from rttrr_pin.validate.run import validate
 from rttrr_pin.validate.states import FAMILIES, LAST_STATE
 

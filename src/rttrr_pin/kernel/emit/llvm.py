@@ -1,7 +1,7 @@
 """Machine code for this processor by LLVM, through llvmlite, the part of Numba that compiles.
 
 Straight from the program to LLVM's assembly: vectors of states are written as vectors, so that nothing is left to the
-luck of an optimiser, and what takes Numba seconds, inferring types line by line, does not arise.
+luck of an optimiser, and what takes Numba long, inferring types line by line, does not arise.
 """
 
 from __future__ import annotations
@@ -19,8 +19,9 @@ from numpy.typing import NDArray
 
 from rttrr_pin.kernel.emit import Array, Task
 from rttrr_pin.kernel.emit.fastcall import python_call, python_function
-from rttrr_pin.kernel.emit.llvm_body import Layout, body
+from rttrr_pin.kernel.emit.llvm_body import body
 from rttrr_pin.kernel.emit.llvm_calls import calls
+from rttrr_pin.kernel.emit.llvm_vectors import Layout
 from rttrr_pin.kernel.program import Field, Program
 from rttrr_pin.kernel.schedule import Schedule
 

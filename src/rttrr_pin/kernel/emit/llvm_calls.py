@@ -13,7 +13,7 @@ import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from rttrr_pin.kernel.emit.llvm_body import Layout, Lines, VectorCode, declarations, loop
+from rttrr_pin.kernel.emit.llvm_vectors import Layout, Lines, VectorCode, declarations, loop
 from rttrr_pin.kernel.expression import LEAVES
 from rttrr_pin.kernel.schedule import Schedule, Step
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from llvmlite import ir
 
-from rttrr_pin.kernel.emit.llvm_body import Layout
+from rttrr_pin.kernel.emit.llvm_vectors import Layout
 
 I64, F64, F32, PTR, I1 = ir.IntType(64), ir.DoubleType(), ir.FloatType(), ir.PointerType(), ir.IntType(1)
 I32 = ir.IntType(32)
@@ -74,6 +74,12 @@ class Writer:
         """The next address on a cache line."""
         b = self.builder
         return b.inttoptr(b.and_(b.add(b.ptrtoint(address, I64), number(LINE - 1)), number(-LINE)), PTR)
+
+    def require(self, condition: ir.Value, otherwise: ir.Block) -> None:
+        """Go on where the condition holds."""
+        on = self.builder.append_basic_block("on")
+        self.builder.cbranch(condition, on, otherwise)
+        self.builder.position_at_end(on)
 
     def least(self, x: ir.Value, y: ir.Value) -> ir.Value:
         """The smaller of two."""

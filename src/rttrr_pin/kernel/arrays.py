@@ -1,0 +1,55 @@
+"""Arrays as compiled code takes them: rows of states, read and written where they lie if that is possible."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.errors import InputError, ShapeError
+
+Array = NDArray[np.float64]
+
+
+def readable(x: Any, width: int) -> bool:
+    """Whether compiled code can read an array where it lies; all else is checked, and copied if need be."""
+    if type(x) is not np.ndarray or x.dtype not in (np.float64, np.float32) or not x.flags.aligned:
+        return False
+    return bool(x.dtype.isnative and x.ndim and x.shape[-1] == width)
+
+
+def as_rows(x: NDArray[Any], batch: tuple[int, ...], rows: int) -> NDArray[Any]:
+    """(N, width), without copying where strides can say it."""
+    if x.shape[:-1] != batch:
+        x = np.broadcast_to(x, (*batch, x.shape[-1]))
+    return x if x.ndim == 2 else x.reshape(rows, x.shape[-1])
+
+
+def rows_in_place(x: Array, rows: int, width: int) -> Array | None:
+    """(N, width) of the same memory, if there is such a view."""
+    if x.ndim == 2 and x.shape == (rows, width):
+        return x
+    return x.reshape(rows, width) if x.flags.c_contiguous else None
+
+
+def check_out(name: str, x: Any, shape: tuple[int, ...]) -> None:
+    """Refuse what results cannot be written to.
+
+    Raises:
+        InputError: it is no float64 array, or one that cannot be written.
+        ShapeError: it has another shape.
+    """
+    if not isinstance(x, np.ndarray) or x.dtype != np.float64 or not x.flags.aligned or not x.dtype.isnative:
+        kind = f"array of {x.dtype}" if isinstance(x, np.ndarray) else type(x).__name__
+        kind = f"misaligned {kind}" if isinstance(x, np.ndarray) and not x.flags.aligned else kind
+        raise InputError(f"out for {name} is a {kind}: expected a float64 array, such as np.empty({shape})")
+    if x.shape != shape:
+        raise ShapeError(
+            f"out for {name} has shape {x.shape}, expected {shape}: pass np.empty({shape})",
+            name="out",
+            got=x.shape,
+            wanted=str(shape),
+        )
+    if not x.flags.writeable:
+        raise InputError(f"out for {name} cannot be written: pass an array of your own, such as np.empty({shape})")
