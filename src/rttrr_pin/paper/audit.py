@@ -1,0 +1,317 @@
+"""The audit: every printed equation against the recursion run on the same symbols, with evidence for each verdict."""
+
+from __future__ import annotations
+
+import enum
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, replace
+from fractions import Fraction
+from functools import cached_property, partial
+
+from rttrr_pin.paper.evidence import Evidence, Witness, weigh
+from rttrr_pin.paper.findings import Finding, findings_of
+from rttrr_pin.paper.form import expansions, folded, in_printed_form, sum_symbols, summed_angles, with_sums
+from rttrr_pin.paper.match import Numeral, Pair, as_terms, corrected, match
+from rttrr_pin.paper.printed import PrintedComponent, PrintedTerm, Split
+from rttrr_pin.paper.publication import DEFINITION, Convention, Equation, Publication
+from rttrr_pin.paper.text import in_language, spelled
+from rttrr_pin.symbolic.derivation import ClosedForms, closed_forms
+from rttrr_pin.symbolic.ring import Polynomial, Ring
+from rttrr_pin.symbolic.symbols import ACCELERATION, FORCE, MOMENT, Dimension, Role, Symbol, Terms
+
+
+class Verdict(enum.StrEnum):
+    """What the audit says of a component."""
+
+    MATCH = "match"
+    DIFFERS = "differs"
+    UNPARSED = "unparsed"
+
+
+@dataclass(frozen=True, slots=True)
+class ComponentAudit:
+    """One component of one equation.
+
+    Attributes:
+        equation: its number.
+        quantity: its name, such as F5z.
+        line: where the equation starts in the published text; 0 where that is not known.
+        printed_terms: how many terms are printed, brackets expanded.
+        derived_terms: how many there should be, in the form that the text chose.
+        verdict: match, differs or unparsed.
+        findings: what is wrong.
+        notes: readings of ambiguous or stray tokens in terms that match, and of lost boundaries.
+        unparsed: why it could not be read; empty where it could.
+        corrected: the right-hand side as it should be printed, term by term, each with whether it was changed.
+        proven: whether the corrected text, read again, is symbolically equal to the derivation.
+        evidence: what numbers say; None where it could not be read.
+    """
+
+    equation: int | str
+    quantity: str
+    line: int
+    printed_terms: int
+    derived_terms: int
+    verdict: Verdict
+    findings: tuple[Finding, ...] = ()
+    notes: tuple[str, ...] = ()
+    unparsed: str = ""
+    corrected: tuple[tuple[str, bool], ...] = ()
+    proven: bool = False
+    evidence: Evidence | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ConventionCheck:
+    """A convention, and how the equations would fare with the other one.
+
+    Attributes:
+        convention: what is read, and how.
+        findings: how many findings there are with it; None where there is no other to try.
+        otherwise: how many there would be with the other.
+    """
+
+    convention: Convention
+    findings: int | None = None
+    otherwise: int | None = None
+
+
+@dataclass(frozen=True)
+class Audit:
+    """The audit of a publication.
+
+    Attributes:
+        publication: what was audited.
+        components: in the order of the equations.
+        conventions: what the text leaves to the reader.
+        seed: of the state at which numbers were compared.
+    """
+
+    publication: Publication
+    components: tuple[ComponentAudit, ...]
+    conventions: tuple[ConventionCheck, ...]
+    seed: int
+
+    @property
+    def findings(self) -> list[Finding]:
+        """All findings."""
+        return [finding for component in self.components for finding in component.findings]
+
+    @property
+    def all_right(self) -> bool:
+        """Whether every component is right as printed."""
+        return all(component.verdict is Verdict.MATCH for component in self.components)
+
+    def count(self, verdict: Verdict) -> int:
+        """How many components have a verdict."""
+        return sum(component.verdict is verdict for component in self.components)
+
+
+def audit(
+    publication: Publication, seed: int = 0, progress: Callable[[int], None] = lambda done: None
+) -> Audit:
+    """Hold every equation of a publication against the recursion.
+
+    Args:
+        publication: the equations, with all that they assume.
+        seed: of the random state at which numbers are compared.
+        progress: is called with the number of equations done.
+
+    Returns:
+        Verdicts and findings for every component, corrected equations, and evidence.
+
+    Raises:
+        OracleError: Pinocchio cannot take the robot.
+    """
+    auditor = Auditor(publication, seed)
+    components: list[ComponentAudit] = []
+    for done, equation in enumerate(publication.equations, start=1):
+        components += auditor.audit(equation)
+        progress(done)
+    checks = [auditor.check(convention, components) for convention in publication.conventions]
+    return Audit(publication, tuple(components), tuple(checks), seed)
+
+
+@dataclass(frozen=True)
+class Paired:
+    """One component as printed, paired with what is derived."""
+
+    component: PrintedComponent
+    pairs: list[Pair]
+    derived: Terms
+    ring: Ring
+
+    @property
+    def weight(self) -> float:
+        """Of all slips; a component that cannot be read weighs more than any that can."""
+        return 1e6 if self.component.unparsed else sum(pair.weight for pair in self.pairs)
+
+
+class Auditor:
+    """What equations are held against: the derivation, and one witness of numbers."""
+
+    def __init__(self, publication: Publication, seed: int) -> None:
+        self.publication = publication
+        self.robot = publication.robot
+        self.seed = seed
+
+    @cached_property
+    def forms(self) -> ClosedForms:
+        """The derivation."""
+        return closed_forms(self.robot)
+
+    @cached_property
+    def witness(self) -> Witness:
+        """One random state."""
+        return Witness(self.robot, self.seed)
+
+    def audit(self, equation: Equation) -> list[ComponentAudit]:
+        """The components of one equation; none for one that only defines letters."""
+        if equation.quantity == DEFINITION:
+            return []
+        note, paired = self._best(equation)
+        return [
+            self._component(equation, k, one, note) for k, one in enumerate(paired)
+        ]
+
+    def check(self, convention: Convention, components: Iterable[ComponentAudit]) -> ConventionCheck:
+        """A convention against its alternative: the same pairing with some letters' signs turned."""
+        if not convention.flip:
+            return ConventionCheck(convention)
+        touched = {
+            equation.number: equation
+            for equation in self.publication.equations
+            if equation.quantity != DEFINITION
+            and any(
+                name in convention.flip
+                for axis in range(max(1, len(equation.components)))
+                for factors in self.robot.ring.terms(self.derived(equation, axis))
+                for name, _ in factors
+            )
+        }
+        findings = sum(len(c.findings) for c in components if c.equation in touched)
+        turned = {name: -self.robot.ring[name] for name in convention.flip}
+        otherwise = 0
+        for equation in touched.values():
+            _, paired = self._best(equation, turned)
+            otherwise += sum(len(pair.kinds) for one in paired for pair in one.pairs)
+        return ConventionCheck(convention, findings, otherwise)
+
+    def derived(self, equation: Equation, k: int) -> Polynomial:
+        """What is right for component k of an equation."""
+        if equation.quantity == "tau":
+            return self.forms.tau[equation.place]
+        vectors = {"vC": self.forms.v_dot_C, "F": self.forms.F, "N": self.forms.N, "f": self.forms.f, "n": self.forms.n}
+        return list(vectors[equation.quantity][equation.place])[_axis(equation, k)]
+
+    def _best(self, equation: Equation, turned: Mapping[str, Polynomial] | None = None) -> tuple[str, list[Paired]]:
+        """The way to divide the display that leaves the least to explain."""
+        splits = [(split, self.paired(equation, split, turned or {})) for split in self.publication.read(equation)]
+        split, paired = min(splits, key=lambda pair: sum(one.weight for one in pair[1]))
+        note = split.note
+        if len(splits) > 1:
+            note += f" ({len(splits)} ways were tried; this leaves the fewest slips)"
+        return note, paired
+
+    def paired(self, equation: Equation, split: Split, turned: Mapping[str, Polynomial]) -> list[Paired]:
+        """Each component of an equation, divided in one way, paired with what is derived.
+
+        Args:
+            equation: the equation.
+            split: how its text was divided and read.
+            turned: what stands for some letters in the derivation, to try another convention.
+        """
+        found = []
+        for k, component in enumerate(split.components):
+            ring = ring_of(self.robot.ring, component.terms)
+            derived = self.robot.ring.substituted(self.derived(equation, k), turned)
+            terms = self.robot.ring.terms(derived)
+            sums = with_sums(summed_angles(ring.symbols))
+            form = in_printed_form(folded(terms, sums), component.terms, angles_of(ring))
+            pairs = match(component.terms, form, ring.symbols)
+            if not component.unparsed and not turned and self._equal(ring, sums, pairs, terms):
+                pairs = [replace(pair, kinds=(), weight=0.0) for pair in pairs if pair.place is not None]
+            found.append(Paired(component, pairs, form, ring))
+        return found
+
+    def _equal(self, ring: Ring, sums: list[str], pairs: Iterable[Pair], derived: Terms) -> bool:
+        """Whether the printed sum is equal to the derived one, whatever its form."""
+        printed = as_terms((pair.reading.coefficient, pair.reading.factors) for pair in pairs if pair.reading)
+        difference = ring.polynomial(printed) - ring.polynomial(derived)
+        return not len(ring.substituted(difference, expansions(ring, sums)))
+
+    def _component(self, equation: Equation, k: int, paired: Paired, note: str) -> ComponentAudit:
+        name = equation.names[k]
+        terms, ring = paired.component.terms, paired.ring
+        head = ComponentAudit(
+            equation.number, name, equation.line, len(terms), len(paired.derived), Verdict.UNPARSED,
+            unparsed=paired.component.unparsed, notes=(note,) if note else (),
+        )  # fmt: skip
+        if paired.component.unparsed:
+            return head
+        letters = spelled(ring.symbols, self.publication.spellings, self.publication.language)
+        writing = partial(in_language, self.publication.language, symbols=letters)
+        findings = findings_of(name, paired.pairs, terms, ring.symbols, dimension_of(self, equation), writing)
+        quiet = [pair.reading.note for pair in paired.pairs if pair.reading and pair.reading.note and not pair.kinds]
+        right = corrected(paired.pairs) if findings else [(_numeral(pair), False) for pair in paired.pairs]
+        texts = writing([numeral for numeral, _ in right])
+        return replace(
+            head,
+            verdict=Verdict.DIFFERS if findings else Verdict.MATCH,
+            findings=findings,
+            notes=(*head.notes, *quiet),
+            corrected=tuple(zip(texts, (changed for _, changed in right), strict=True)),
+            proven=self._proven(equation, k, paired, texts),
+            evidence=self._evidence(equation, k, paired, [numeral for numeral, _ in right]),
+        )
+
+    def _proven(self, equation: Equation, k: int, paired: Paired, texts: list[str]) -> bool:
+        """Whether the corrected text, read as the published one was, is the derived polynomial."""
+        again = self.publication.read(replace(equation, components="x", texts=(" ".join(texts),)))[0].components[0]
+        if again.unparsed:
+            return False
+        ring = ring_of(paired.ring, again.terms)
+        sums = with_sums(summed_angles(ring.symbols))
+        printed = as_terms((term.readings[0].coefficient, term.readings[0].factors) for term in again.terms)
+        derived = ring.polynomial(self.robot.ring.terms(self.derived(equation, k)))
+        return not len(ring.substituted(ring.polynomial(printed) - derived, expansions(ring, sums)))
+
+    def _evidence(self, equation: Equation, k: int, paired: Paired, right: list[Numeral]) -> Evidence:
+        ring = paired.ring
+        sums = with_sums(summed_angles(ring.symbols))
+        self.witness.with_sums({name: ring.terms(x) for name, x in expansions(ring, sums).items()})
+        printed = as_terms(_numeral(pair) for pair in paired.pairs if pair.reading)
+        place = (equation.quantity, equation.place, _axis(equation, k))
+        return weigh(self.witness, place, printed, as_terms(right))
+
+
+def _axis(equation: Equation, k: int) -> int:
+    return "xyz".index(equation.components[k]) if equation.components else 0
+
+
+def _numeral(pair: Pair) -> Numeral:
+    return (pair.reading.coefficient, pair.reading.factors) if pair.reading else (Fraction(0), ())
+
+
+def ring_of(ring: Ring, terms: Iterable[PrintedTerm]) -> Ring:
+    """A ring that also has the sums of angles and the unknown symbols of printed terms."""
+    readings = [reading for term in terms for reading in term.readings]
+    names = dict.fromkeys(name for reading in readings for name, _ in reading.factors if name not in ring.symbols)
+    sums = sum_symbols(with_sums(summed_angles(names)))
+    known = {symbol.name for symbol in sums} | set(ring.symbols)
+    unknown = [Symbol(name, name, Role.UNKNOWN) for name in names if name not in known]
+    new = [symbol for symbol in sums if symbol.name not in ring.symbols]
+    return Ring([*ring.symbols.values(), *new, *unknown]) if new or unknown else ring
+
+
+def angles_of(ring: Ring) -> list[str]:
+    """The suffixes of all angles: 4 of c_4."""
+    return [name.removeprefix("c_") for name, symbol in ring.symbols.items() if symbol.role is Role.COSINE]
+
+
+def dimension_of(auditor: Auditor, equation: Equation) -> Dimension:
+    """The dimension that every term of an equation should have."""
+    if equation.quantity == "tau":
+        rotations = [rotation for joint in auditor.robot.model.moving for rotation in joint.type.rotations]
+        return MOMENT if rotations[equation.place] else FORCE
+    return {"vC": ACCELERATION, "F": FORCE, "f": FORCE, "N": MOMENT, "n": MOMENT}[equation.quantity]
