@@ -31,10 +31,10 @@ WEIGHT: Mapping[Kind, float] = {
     Kind.RATE: 1.0,
     Kind.SIGN: 1.0,
     Kind.COEFFICIENT: 1.0,
-    Kind.SYMBOL: 1.0,
-    Kind.DUPLICATE: 1.4,
-    Kind.EXTRA: 1.5,
-    Kind.MISSING: 1.5,
+    Kind.SYMBOL: 1.1,
+    Kind.DUPLICATE: 0.4,
+    Kind.EXTRA: 1.2,
+    Kind.MISSING: 1.2,
 }
 """The weight of one slip of each kind."""
 
