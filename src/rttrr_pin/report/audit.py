@@ -103,6 +103,7 @@ def _verdict(found: Totals, console: Console) -> None:
     if found.findings:
         kinds = ", ".join(f"{number} {kind}" for kind, number in found.kinds.items() if number)
         console.print(Padding(Text(f"by kind: {kinds}"), (0, 0, 0, 2)))
+    if found.dimensionally_wrong:
         console.print(Padding(Text(dimension_summary(found)), (0, 0, 0, 2)))
 
 

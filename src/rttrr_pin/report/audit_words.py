@@ -129,7 +129,9 @@ def dimension_words(finding: Finding) -> str:
 
 
 def dimension_summary(found: Totals) -> str:
-    """How many printed terms need no derivation to be known as wrong."""
+    """How many printed terms need no derivation to be known as wrong; empty where there are none."""
+    if not found.dimensionally_wrong:
+        return ""
     number = found.dimensionally_wrong
     have = "has" if number == 1 else "have"
     return f"{counted(number, 'printed term')} {have} the wrong dimension: wrong without any derivation"

@@ -68,6 +68,7 @@ def _blocks(result: Audit) -> Iterator[Block]:
 
 def _opening(result: Audit, found: Totals) -> Iterator[Block]:
     publication = result.publication
+    wrong_dimension = dimension_summary(found)
     yield Paragraph(
         (
             Words(publication.source, strong=True),
@@ -82,7 +83,7 @@ def _opening(result: Audit, found: Totals) -> Iterator[Block]:
             Words(
                 f"{found.verdicts[Verdict.MATCH]} are right as printed, {found.verdicts[Verdict.DIFFERS]} differ, with "
                 f"{counted(found.findings, 'finding')}, and {found.verdicts[Verdict.UNPARSED]} could not be read."
-                + (f" {dimension_summary(found)}." if found.findings else "")
+                + (f" {wrong_dimension}." if wrong_dimension else "")
             ),
         )
     )

@@ -37,8 +37,8 @@ PREAMBLE = r"""\documentclass[a4paper,10pt]{article}
 
 SIGNS = {
     "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%", "_": r"\_",
-    "^": r"\textasciicircum{}", "`": r"\textasciigrave{}", "~": r"\textasciitilde{}", "<": r"\textless{}", ">": r"\textgreater{}",
-    "|": r"\textbar{}", '"': r"''",
+    "^": r"\textasciicircum{}", "`": r"\textasciigrave{}", "~": r"\textasciitilde{}",
+    "<": r"\textless{}", ">": r"\textgreater{}", "|": r"\textbar{}", '"': r"''",
 }  # fmt: skip
 """What stands for signs that mean something to TeX."""
 
