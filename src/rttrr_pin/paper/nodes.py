@@ -1,0 +1,103 @@
+"""Symbols, factors and products as printed, before anything is decided about what they mean."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from fractions import Fraction
+
+
+@dataclass(frozen=True, slots=True)
+class Atom:
+    """A symbol as printed, however it was spelled.
+
+    Attributes:
+        letters: the letter or letters, with the backslash of a Greek one.
+        subscript: without blanks and without braces that print nothing.
+        superscript: stars, primes and letters; powers are not part of a symbol.
+        prefix: the superscript that stands before it.
+        accents: dots and bars, the outermost first.
+    """
+
+    letters: str
+    subscript: str = ""
+    superscript: str = ""
+    prefix: str = ""
+    accents: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        text = self.letters
+        for accent in reversed(self.accents):
+            text = f"{accent}{{{text}}}"
+        prefix = f"{{}}^{braced(self.prefix)}" if self.prefix else ""
+        subscript = f"_{braced(self.subscript)}" if self.subscript else ""
+        superscript = f"^{braced(self.superscript)}" if self.superscript else ""
+        return f"{prefix}{text}{subscript}{superscript}"
+
+
+def braced(text: str) -> str:
+    """A script with the braces that it needs."""
+    return text.strip() if len(text) == 1 else f"{{{text.strip()}}}"
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """A bracket, or the numerator of a fraction.
+
+    Attributes:
+        products: the sum inside.
+        start, end: where that sum stands.
+        divisor: the sum in the denominator.
+    """
+
+    products: tuple[Product, ...]
+    start: int
+    end: int
+    divisor: tuple[Product, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Factor:
+    """One factor of a product.
+
+    Attributes:
+        body: what it is.
+        start, end: where it stands.
+        exponent: the power printed behind it; None where there is none.
+        prefix: the superscript that stands before it.
+        operator: the operator printed before it: "", "*" or "/".
+        symbol: it has been decided that a `c` or `s` is a symbol, not a function.
+    """
+
+    body: Atom | Fraction | Group
+    start: int
+    end: int
+    exponent: int | None = None
+    prefix: str = ""
+    operator: str = ""
+    symbol: bool = False
+
+    @property
+    def power(self) -> int:
+        """The exponent; 1 where none is printed."""
+        return 1 if self.exponent is None else self.exponent
+
+    @property
+    def atom(self) -> Atom | None:
+        """The symbol with its prefix; None where it is no symbol."""
+        return replace(self.body, prefix=self.prefix) if isinstance(self.body, Atom) else None
+
+
+@dataclass(frozen=True, slots=True)
+class Product:
+    """One term of a sum.
+
+    Attributes:
+        signs: the signs before it, 1 or -1, a tuple for each line that has some.
+        factors: in printed order.
+        start, end: where it stands, from its last line's sign on.
+    """
+
+    signs: tuple[tuple[int, ...], ...]
+    factors: tuple[Factor, ...]
+    start: int
+    end: int
