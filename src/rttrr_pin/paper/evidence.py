@@ -122,7 +122,9 @@ class Witness:
     def _wrenches(self) -> Any:
         loads: list[Load] = []
         for payload in self.robot.payloads:
-            f, n = (np.array([self.number(self.robot.ring.terms(x)) for x in vector]) for vector in (payload.f, payload.n))
+            f, n = (
+                np.array([self.number(self.robot.ring.terms(x)) for x in vector]) for vector in (payload.f, payload.n)
+            )
             loads.append(Load(payload.link, f, n))
         oracle = make_oracle("pinocchio", self.robot.model)
         return oracle.evaluate(self.q[None], self.v[None], self.a[None], loads).wrenches
@@ -153,9 +155,7 @@ class Witness:
         return Body(body.type, self._vector(body.axis), R, p, self._ball(body.M), r_C, I)
 
 
-def weigh(
-    witness: Witness, component: tuple[str, int, int], printed: Terms, corrected: Terms
-) -> Evidence:
+def weigh(witness: Witness, component: tuple[str, int, int], printed: Terms, corrected: Terms) -> Evidence:
     """What numbers say of a component as printed and as corrected."""
     pinocchio, truth = witness.pinocchio(*component), witness.recursion(*component)
     known = witness.knows(printed)
@@ -173,5 +173,3 @@ def weigh(
 def dimensionally_right(factors: Any, ring: Ring, wanted: Any, unknown: Sequence[str]) -> bool | None:
     """Whether a product has the dimension of its quantity; None where it has an unknown symbol."""
     return None if unknown else ring.dimension(factors) == wanted
-
-

@@ -107,7 +107,6 @@ class Vocabulary:
         return name
 
 
-
 def _like_angle(name: str) -> bool:
     function, *indices = name.split("_")
     return function in FUNCTIONS.values() and bool(indices) and all(index.isdecimal() for index in indices)

@@ -283,4 +283,3 @@ def default_letters(model: Model, payload_link: int | None = None) -> Letters:
             for x, axis in enumerate(AXES):
                 name(((kind, x),), f"{letter}_tool_{axis}", rf"{up}{letter}_{{\mathrm{{tool}},{axis}}}", always=True)
     return letters_of(model, named)
-
