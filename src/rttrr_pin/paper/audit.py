@@ -214,7 +214,8 @@ class Auditor:
         if equation.quantity == "tau":
             return forms.tau[equation.place]
         vectors = {"vC": forms.v_dot_C, "F": forms.F, "N": forms.N, "f": forms.f, "n": forms.n}
-        return list(vectors[equation.quantity][equation.place])[_axis(equation, k)]
+        polynomial: Polynomial = list(vectors[equation.quantity][equation.place])[_axis(equation, k)]
+        return polynomial
 
     def _best(self, equation: Equation, turned: Mapping[str, Polynomial] | None = None) -> tuple[str, list[Paired]]:
         """The way to divide the display that leaves the least to explain."""

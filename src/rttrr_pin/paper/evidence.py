@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
@@ -140,8 +139,8 @@ class Witness:
         with precision(BITS):
             bodies = [self._body(body) for body in robot.bodies()]
             payloads = [Payload(x.link, self._vector(x.f), self._vector(x.n)) for x in robot.payloads]
-            states = [[ball(float(x)) for x in numbers] for numbers in (self.q, self.v, self.a)]
-            return dynamics(robot.model, BALL, *states, payloads, links=bodies, gravity=self._vector(robot.gravity))
+            q, v, a = ([ball(float(x)) for x in numbers] for numbers in (self.q, self.v, self.a))
+            return dynamics(robot.model, BALL, q, v, a, payloads, links=bodies, gravity=self._vector(robot.gravity))
 
     def _ball(self, x: Scalar) -> arb:
         return arb(evaluate(self.robot.ring.terms(x), self._ball_values, ball))

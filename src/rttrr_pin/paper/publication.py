@@ -7,13 +7,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from rttrr_pin.paper.arm import LINK_KEYS, read_robot
-from rttrr_pin.paper.latex import Vocabulary, read_latex
+from rttrr_pin.paper.arm import read_robot
+from rttrr_pin.paper.latex import read_latex
 from rttrr_pin.paper.match import as_terms
 from rttrr_pin.paper.printed import Split
 from rttrr_pin.paper.python import read_python
 from rttrr_pin.paper.tables import Table, read_table
 from rttrr_pin.paper.templates import filled, letters_in
+from rttrr_pin.paper.vocabulary import Vocabulary
 from rttrr_pin.symbolic.chain import Letters, SymbolicRobot
 from rttrr_pin.symbolic.symbols import Symbol, Terms, renamed
 
@@ -297,6 +298,3 @@ def _conventions(file: Table, symbols: Mapping[str, Symbol]) -> list[Convention]
         numbers = tuple(table.get("equations", list, []))
         found.append(Convention(table.get("title", str), table.get("text", str), numbers, tuple(flip)))
     return found
-
-
-__all__ = ["LINK_KEYS", "RTTRR", "Convention", "Equation", "Publication", "read_publication"]

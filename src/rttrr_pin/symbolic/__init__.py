@@ -1,0 +1,1 @@
+"""Closed forms: the specification run on symbols."""

@@ -31,6 +31,9 @@ Slot = tuple[str | int, ...]
 """One number of a robot: ("mass", i), ("com", i, x), ("inertia", i, x, y), ("origin", i, x), ("gravity", x), and of the
 payload ("force", x), ("moment", x); links and joints i from 0, axes x, y of 0, 1, 2."""
 
+Named = tuple[Symbol, int, tuple[Slot, ...]]
+"""A letter, its sign (-1 where it stands for minus the number), and the numbers that it stands for."""
+
 SLOT_DIMENSION: Mapping[str, Dimension] = {
     "mass": MASS,
     "com": LENGTH,
@@ -235,14 +238,16 @@ def value_of_slot(model: Model, slot: Slot) -> float:
     return float(model.gravity[i[0]]) if kind == "gravity" else 0.0
 
 
-def letters_of(model: Model, named: Iterable[tuple[Symbol, int, tuple[Slot, ...]]]) -> Letters:
+def letters_of(model: Model, named: Iterable[Named]) -> Letters:
     """The letters that stand each for one number of a robot, in one place or in several.
 
     Args:
         model: the robot.
-        named: for each letter its symbol, its sign (1, or -1 where it stands for minus the number), and the slots.
+        named: each letter with its sign and the slots of its number.
     """
-    symbols, slots, values = [], {}, {}
+    symbols: list[Symbol] = []
+    slots: dict[Slot, Terms] = {}
+    values: dict[str, float] = {}
     for symbol, sign, places in named:
         symbols.append(symbol)
         values[symbol.name] = sign * value_of_slot(model, places[0])
@@ -252,34 +257,46 @@ def letters_of(model: Model, named: Iterable[tuple[Symbol, int, tuple[Slot, ...]
 
 
 def default_letters(model: Model, payload_link: int | None = None) -> Letters:
-    """Letters for every number of a robot that is not zero, after the paper's: M, r_C, J*, and p for the joints' origins.
+    """Letters for every number of a robot that is not zero, after the paper's: M, r_C, J*; p for the joints' origins.
 
-    The payload is named after its link. J_xy, J_xz, J_yz are minus the matrix elements, as the paper has them.
+    J_xy, J_xz, J_yz are minus the matrix elements, as the paper has them.
+
+    Args:
+        model: the robot.
+        payload_link: index of the link that a payload acts at; None: there is none.
     """
-    named: list[tuple[Symbol, int, tuple[Slot, ...]]] = []
-
-    def name(slots: tuple[Slot, ...], identifier: str, latex: str, sign: int = 1, always: bool = False) -> None:
-        if always or value_of_slot(model, slots[0]):
-            named.append((parameter(slots[0], identifier, latex), sign, slots))
-
-    for i in range(len(model.links)):
-        link, up = i + 1, f"{{}}^{_index(i + 1)}"
-        for x, axis in enumerate(AXES):
-            name((("origin", i, x),), f"p_{link}{axis}", f"p_{{{link}{axis}}}")
-        name((("mass", i),), f"M_{link}", f"M_{_index(link)}")
-        for x, axis in enumerate(AXES):
-            name((("com", i, x),), f"r_C{link}{axis}", f"{up}r_{{C_{{{link}{axis}}}}}")
-        for x, axis in enumerate(AXES):
-            name((("inertia", i, x, x),), f"J_{link}{axis}", f"{up}J_{axis}^*")
-        for x, y in ((0, 1), (0, 2), (1, 2)):
-            pair = AXES[x] + AXES[y]
-            name((("inertia", i, x, y), ("inertia", i, y, x)), f"J_{link}{pair}", f"{up}J_{{{pair}}}^*", -1)
+    named = [letter for i in range(len(model.links)) for letter in _link_letters(i)]
     for x, axis in enumerate(AXES):
-        upright = axis == "z"
-        name((("gravity", x),), "g" if upright else f"g_{axis}", "g" if upright else f"g_{axis}", -1)
+        name = "g" if axis == "z" else f"g_{axis}"
+        named.append((parameter(("gravity", x), name, name), -1, (("gravity", x),)))
+    named = [letter for letter in named if value_of_slot(model, letter[2][0])]
     if payload_link is not None:
-        up = f"{{}}^{_index(payload_link + 1)}"
-        for kind, letter in (("force", "f"), ("moment", "n")):
-            for x, axis in enumerate(AXES):
-                name(((kind, x),), f"{letter}_tool_{axis}", rf"{up}{letter}_{{\mathrm{{tool}},{axis}}}", always=True)
+        named += _payload_letters(payload_link)
     return letters_of(model, named)
+
+
+def _link_letters(i: int) -> Iterator[Named]:
+    """The letters of a link: origin of its joint, mass, centre of mass, tensor."""
+    link, up = i + 1, f"{{}}^{_index(i + 1)}"
+    for x, axis in enumerate(AXES):
+        yield _named(("origin", i, x), f"p_{link}{axis}", f"p_{{{link}{axis}}}")
+    yield _named(("mass", i), f"M_{link}", f"M_{_index(link)}")
+    for x, axis in enumerate(AXES):
+        yield _named(("com", i, x), f"r_C{link}{axis}", f"{up}r_{{C_{{{link}{axis}}}}}")
+    for x, axis in enumerate(AXES):
+        yield _named(("inertia", i, x, x), f"J_{link}{axis}", f"{up}J_{axis}^*")
+    for x, y in ((0, 1), (0, 2), (1, 2)):
+        pair = AXES[x] + AXES[y]
+        slots = (("inertia", i, x, y), ("inertia", i, y, x))
+        yield parameter(slots[0], f"J_{link}{pair}", f"{up}J_{{{pair}}}^*"), -1, slots
+
+
+def _payload_letters(link: int) -> Iterator[Named]:
+    up = f"{{}}^{_index(link + 1)}"
+    for kind, letter in (("force", "f"), ("moment", "n")):
+        for x, axis in enumerate(AXES):
+            yield _named((kind, x), f"{letter}_tool_{axis}", rf"{up}{letter}_{{\mathrm{{tool}},{axis}}}")
+
+
+def _named(slot: Slot, name: str, latex: str) -> Named:
+    return parameter(slot, name, latex), 1, (slot,)
