@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-import enum
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, partial
 
 from rttrr_pin.paper.evidence import Evidence, Witness, weigh
-from rttrr_pin.paper.findings import Finding, findings_of
+from rttrr_pin.paper.findings import findings_of
 from rttrr_pin.paper.form import expansions, folded, in_printed_form, sum_symbols, summed_angles, with_sums
 from rttrr_pin.paper.match import Numeral, Pair, as_terms, corrected, match
 from rttrr_pin.paper.printed import PrintedComponent, PrintedTerm, Split
 from rttrr_pin.paper.publication import DEFINITION, Convention, Equation, Publication
 from rttrr_pin.paper.text import in_language, spelled
+from rttrr_pin.paper.verdicts import Audit, ComponentAudit, ConventionCheck, Verdict
 from rttrr_pin.symbolic.derivation import ClosedForms, closed_forms
 from rttrr_pin.symbolic.ring import Polynomial, Ring
 from rttrr_pin.symbolic.symbols import (
@@ -28,93 +28,6 @@ from rttrr_pin.symbolic.symbols import (
     renamed,
     renamed_factors,
 )
-
-
-class Verdict(enum.StrEnum):
-    """What the audit says of a component."""
-
-    MATCH = "match"
-    DIFFERS = "differs"
-    UNPARSED = "unparsed"
-
-
-@dataclass(frozen=True, slots=True)
-class ComponentAudit:
-    """One component of one equation.
-
-    Attributes:
-        equation: its number.
-        quantity: its name, such as F5z.
-        line: where the equation starts in the published text; 0 where that is not known.
-        printed_terms: how many terms are printed, brackets expanded.
-        derived_terms: how many there should be, in the form that the text chose.
-        verdict: match, differs or unparsed.
-        findings: what is wrong.
-        notes: readings of ambiguous or stray tokens in terms that match, and of lost boundaries.
-        unparsed: why it could not be read; empty where it could.
-        corrected: the right-hand side as it should be printed, term by term, each with whether it was changed.
-        proven: whether the corrected text, read again, is symbolically equal to the derivation.
-        evidence: what numbers say; None where it could not be read.
-    """
-
-    equation: int | str
-    quantity: str
-    line: int
-    printed_terms: int
-    derived_terms: int
-    verdict: Verdict
-    findings: tuple[Finding, ...] = ()
-    notes: tuple[str, ...] = ()
-    unparsed: str = ""
-    corrected: tuple[tuple[str, bool], ...] = ()
-    proven: bool = False
-    evidence: Evidence | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class ConventionCheck:
-    """A convention, and how the equations would fare with the other one.
-
-    Attributes:
-        convention: what is read, and how.
-        findings: how many findings there are with it; None where there is no other to try.
-        otherwise: how many there would be with the other.
-    """
-
-    convention: Convention
-    findings: int | None = None
-    otherwise: int | None = None
-
-
-@dataclass(frozen=True)
-class Audit:
-    """The audit of a publication.
-
-    Attributes:
-        publication: what was audited.
-        components: in the order of the equations.
-        conventions: what the text leaves to the reader.
-        seed: of the state at which numbers were compared.
-    """
-
-    publication: Publication
-    components: tuple[ComponentAudit, ...]
-    conventions: tuple[ConventionCheck, ...]
-    seed: int
-
-    @property
-    def findings(self) -> list[Finding]:
-        """All findings."""
-        return [finding for component in self.components for finding in component.findings]
-
-    @property
-    def all_right(self) -> bool:
-        """Whether every component is right as printed."""
-        return all(component.verdict is Verdict.MATCH for component in self.components)
-
-    def count(self, verdict: Verdict) -> int:
-        """How many components have a verdict."""
-        return sum(component.verdict is verdict for component in self.components)
 
 
 def audit(publication: Publication, seed: int = 0, progress: Callable[[int], None] = lambda done: None) -> Audit:
