@@ -61,8 +61,9 @@ class Ring:
     def reduced(self, x: Scalar) -> Polynomial:
         """The same modulo c^2 + s^2 = 1: no sine is squared."""
         polynomial = self.lift(x)
+        degrees = polynomial.degrees()  # of other sines a division leaves them as they are
         for i, circle in self._circles:
-            if polynomial.degrees()[i] > 1:
+            if degrees[i] > 1:
                 polynomial = divmod(polynomial, circle)[1]
         return polynomial
 
