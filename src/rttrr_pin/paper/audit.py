@@ -166,9 +166,10 @@ class Auditor:
         return replace(best, pairs=read)
 
     def _in_form(self, component: PrintedComponent, ring: Ring, derived: Polynomial) -> Paired:
+        terms = ring.terms(derived)
         ring = ring_of(ring, component.terms)
         sums = with_sums(summed_angles(ring.symbols))
-        form = in_printed_form(folded(ring.terms(derived), sums), component.terms, angles_of(ring))
+        form = in_printed_form(folded(terms, sums), component.terms, angles_of(ring))
         return Paired(component, match(component.terms, form, ring.symbols, self.publication.twins), form, ring)
 
     def _equal(self, paired: Paired, derived: Polynomial) -> bool:

@@ -53,6 +53,10 @@ class Ring:
     def lift(self, x: Scalar) -> Polynomial:
         """Any scalar (an integer, a fraction, a polynomial) as a polynomial."""
         if isinstance(x, fmpq_mpoly):
+            if x.context() is not self._context:
+                raise ValueError(
+                    "a polynomial of another ring: take its terms there, and make a polynomial of them here"
+                )
             return x
         if isinstance(x, Fraction):
             x = fmpq(x.numerator, x.denominator)
