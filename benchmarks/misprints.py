@@ -56,7 +56,10 @@ class Typesetter:
         texts = [("-" if x < 0 else "+", self.term(abs(x), factors)) for x, factors in inner]
         left, right = self.one_of((("(", ")"), (r"\left(", r"\right)"), ("[", "]"), (r"\left[", r"\right]")))
         body = " ".join(f"{s} {t}" for s, t in texts).removeprefix("+ ")
-        return ("-" if sign < 0 else "+", f"{self.symbol(name, 1)} {self.one_of(('', chr(92) + 'cdot '))}{left}{body}{right}")
+        return (
+            "-" if sign < 0 else "+",
+            f"{self.symbol(name, 1)} {self.one_of(('', chr(92) + 'cdot '))}{left}{body}{right}",
+        )
 
     def _lines(self, pieces: list[tuple[str, str]]) -> str:
         """Broken over lines now and then, the sign repeated or not."""
@@ -113,7 +116,11 @@ class Typesetter:
     def _trigonometric(self, name: str, power: int) -> str:
         letter, k = name[0], name[2:]
         word = self.one_of((letter, {"c": r"\cos", "s": r"\sin"}[letter]))
-        argument = self.one_of((f" q_{k}", f"(q_{k})", f" q_{{{k}}}")) if word != letter else self.one_of((f"q_{k}", f" q_{k}"))
+        argument = (
+            self.one_of((f" q_{k}", f"(q_{k})", f" q_{{{k}}}"))
+            if word != letter
+            else self.one_of((f"q_{k}", f" q_{k}"))
+        )
         return f"{word}{argument}" if power == 1 else f"{word}^{power}{argument}"
 
 
@@ -138,7 +145,9 @@ class Printer:
                     result[sine] = -x
         return result
 
-    def misprinted(self, terms: list[Numeral], foreign: list[Numeral], count: int) -> tuple[list[Numeral], list[Misprint]]:
+    def misprinted(
+        self, terms: list[Numeral], foreign: list[Numeral], count: int
+    ) -> tuple[list[Numeral], list[Misprint]]:
         """The terms with slips in some of them, each in another term.
 
         Args:

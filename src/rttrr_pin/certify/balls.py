@@ -42,5 +42,5 @@ def _sign(x: Scalar) -> arb:
     return arb(x).sgn()
 
 
-BALL = Arithmetic(number=lambda value, error: ball(value), column=lambda values: arb(values), sincos=_sincos, sign=_sign)
+BALL = Arithmetic(number=lambda value, error: ball(value), column=lambda x: ball(float(x)), sincos=_sincos, sign=_sign)
 """Balls as a kind of scalar: the model's numbers are the doubles that it holds."""

@@ -30,7 +30,9 @@ SAME = 1e-9
 """Relative difference within which a number of the file is what the table of frames says: files are rounded."""
 
 
-def read_robot(file: Table, symbols: Sequence[Symbol], expression: Expression, find: Callable[[str], str]) -> SymbolicRobot:
+def read_robot(
+    file: Table, symbols: Sequence[Symbol], expression: Expression, find: Callable[[str], str]
+) -> SymbolicRobot:
     """The robot of a file of equations.
 
     Args:
@@ -162,7 +164,9 @@ def _values_in(
             raise about.error(f"no number of the URDF tells {missing[0]!r}: give it in [values]")
         here, there = float(evaluate(terms, values)), value_of_slot(model, slot)
         if not math.isclose(here, there, rel_tol=SAME, abs_tol=SAME * SAME):
-            raise about.error(f"{_slot_name(model, slot)} is {there} in the URDF and {here} by the tables: one is wrong")
+            raise about.error(
+                f"{_slot_name(model, slot)} is {there} in the URDF and {here} by the tables: one is wrong"
+            )
     return values
 
 
@@ -208,10 +212,14 @@ def _motion(link: Table) -> tuple[str, tuple[float, ...]]:
     )
 
 
-def _from_table(about: Table, links: Sequence[Table], slots: Mapping[Slot, Terms], values: Mapping[str, float]) -> Model:
+def _from_table(
+    about: Table, links: Sequence[Table], slots: Mapping[Slot, Terms], values: Mapping[str, float]
+) -> Model:
     """The model of a table of frames, by way of a URDF, so that every oracle can read it."""
     if not links:
-        raise about.error("names no URDF, and there is no [[link]]: give urdf = \"arm.urdf\", or a [[link]] for each link")
+        raise about.error(
+            'names no URDF, and there is no [[link]]: give urdf = "arm.urdf", or a [[link]] for each link'
+        )
 
     def number(slot: Slot) -> float:
         return float(evaluate(slots[slot], values)) if slot in slots else 0.0

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import enum
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from fractions import Fraction
@@ -10,107 +9,29 @@ from functools import cached_property, partial
 
 from rttrr_pin.model import Model
 from rttrr_pin.paper.evidence import Evidence, Witness, weigh
-from rttrr_pin.paper.findings import Finding, findings_of
+from rttrr_pin.paper.findings import findings_of
 from rttrr_pin.paper.form import expansions, folded, in_printed_form, sum_symbols, summed_angles, with_sums
 from rttrr_pin.paper.match import Numeral, Pair, as_terms, corrected, match
 from rttrr_pin.paper.printed import PrintedComponent, PrintedTerm, Split
 from rttrr_pin.paper.publication import DEFINITION, Convention, Equation, Publication
 from rttrr_pin.paper.text import in_language, spelled
+from rttrr_pin.paper.verdicts import Audit, ComponentAudit, ConventionCheck, Verdict
 from rttrr_pin.symbolic.derivation import ClosedForms, closed_forms
 from rttrr_pin.symbolic.ring import Polynomial, Ring
-from rttrr_pin.symbolic.symbols import ACCELERATION, FORCE, MOMENT, Dimension, Role, Symbol, Terms
+from rttrr_pin.symbolic.symbols import (
+    ACCELERATION,
+    FORCE,
+    MOMENT,
+    Dimension,
+    Role,
+    Symbol,
+    Terms,
+    renamed,
+    renamed_factors,
+)
 
 
-class Verdict(enum.StrEnum):
-    """What the audit says of a component."""
-
-    MATCH = "match"
-    DIFFERS = "differs"
-    UNPARSED = "unparsed"
-
-
-@dataclass(frozen=True, slots=True)
-class ComponentAudit:
-    """One component of one equation.
-
-    Attributes:
-        equation: its number.
-        quantity: its name, such as F5z.
-        line: where the equation starts in the published text; 0 where that is not known.
-        printed_terms: how many terms are printed, brackets expanded.
-        derived_terms: how many there should be, in the form that the text chose.
-        verdict: match, differs or unparsed.
-        findings: what is wrong.
-        notes: readings of ambiguous or stray tokens in terms that match, and of lost boundaries.
-        unparsed: why it could not be read; empty where it could.
-        corrected: the right-hand side as it should be printed, term by term, each with whether it was changed.
-        proven: whether the corrected text, read again, is symbolically equal to the derivation.
-        evidence: what numbers say; None where it could not be read.
-    """
-
-    equation: int | str
-    quantity: str
-    line: int
-    printed_terms: int
-    derived_terms: int
-    verdict: Verdict
-    findings: tuple[Finding, ...] = ()
-    notes: tuple[str, ...] = ()
-    unparsed: str = ""
-    corrected: tuple[tuple[str, bool], ...] = ()
-    proven: bool = False
-    evidence: Evidence | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class ConventionCheck:
-    """A convention, and how the equations would fare with the other one.
-
-    Attributes:
-        convention: what is read, and how.
-        findings: how many findings there are with it; None where there is no other to try.
-        otherwise: how many there would be with the other.
-    """
-
-    convention: Convention
-    findings: int | None = None
-    otherwise: int | None = None
-
-
-@dataclass(frozen=True)
-class Audit:
-    """The audit of a publication.
-
-    Attributes:
-        publication: what was audited.
-        components: in the order of the equations.
-        conventions: what the text leaves to the reader.
-        seed: of the state at which numbers were compared.
-    """
-
-    publication: Publication
-    components: tuple[ComponentAudit, ...]
-    conventions: tuple[ConventionCheck, ...]
-    seed: int
-
-    @property
-    def findings(self) -> list[Finding]:
-        """All findings."""
-        return [finding for component in self.components for finding in component.findings]
-
-    @property
-    def all_right(self) -> bool:
-        """Whether every component is right as printed."""
-        return all(component.verdict is Verdict.MATCH for component in self.components)
-
-    def count(self, verdict: Verdict) -> int:
-        """How many components have a verdict."""
-        return sum(component.verdict is verdict for component in self.components)
-
-
-def audit(
-    publication: Publication, seed: int = 0, progress: Callable[[int], None] = lambda done: None
-) -> Audit:
+def audit(publication: Publication, seed: int = 0, progress: Callable[[int], None] = lambda done: None) -> Audit:
     """Hold every equation of a publication against the recursion.
 
     Args:
@@ -162,6 +83,11 @@ class Auditor:
         return closed_forms(self.robot)
 
     @cached_property
+    def forms_apart(self) -> ClosedForms | None:
+        """The derivation with equal letters kept apart, as some texts do; their terms cancel in part."""
+        return None if self.publication.apart is None else closed_forms(self.publication.apart)
+
+    @cached_property
     def witness(self) -> Witness:
         """One random state."""
         return Witness(self.robot, self.seed)
@@ -171,9 +97,7 @@ class Auditor:
         if equation.quantity == DEFINITION:
             return []
         note, paired = self._best(equation)
-        return [
-            self._component(equation, k, one, note) for k, one in enumerate(paired)
-        ]
+        return [self._component(equation, k, one, note) for k, one in enumerate(paired)]
 
     def check(self, convention: Convention, components: Iterable[ComponentAudit]) -> ConventionCheck:
         """A convention against its alternative: the same pairing with some letters' signs turned."""
@@ -198,12 +122,14 @@ class Auditor:
             otherwise += sum(len(pair.kinds) for one in paired for pair in one.pairs)
         return ConventionCheck(convention, findings, otherwise)
 
-    def derived(self, equation: Equation, k: int) -> Polynomial:
+    def derived(self, equation: Equation, k: int, forms: ClosedForms | None = None) -> Polynomial:
         """What is right for component k of an equation."""
+        forms = forms or self.forms
         if equation.quantity == "tau":
-            return self.forms.tau[equation.place]
-        vectors = {"vC": self.forms.v_dot_C, "F": self.forms.F, "N": self.forms.N, "f": self.forms.f, "n": self.forms.n}
-        return list(vectors[equation.quantity][equation.place])[_axis(equation, k)]
+            return forms.tau[equation.place]
+        vectors = {"vC": forms.v_dot_C, "F": forms.F, "N": forms.N, "f": forms.f, "n": forms.n}
+        polynomial: Polynomial = list(vectors[equation.quantity][equation.place])[_axis(equation, k)]
+        return polynomial
 
     def _best(self, equation: Equation, turned: Mapping[str, Polynomial] | None = None) -> tuple[str, list[Paired]]:
         """The way to divide the display that leaves the least to explain."""
@@ -222,23 +148,42 @@ class Auditor:
             split: how its text was divided and read.
             turned: what stands for some letters in the derivation, to try another convention.
         """
-        found = []
-        for k, component in enumerate(split.components):
-            ring = ring_of(self.robot.ring, component.terms)
-            derived = self.robot.ring.substituted(self.derived(equation, k), turned)
-            terms = self.robot.ring.terms(derived)
-            sums = with_sums(summed_angles(ring.symbols))
-            form = in_printed_form(folded(terms, sums), component.terms, angles_of(ring))
-            pairs = match(component.terms, form, ring.symbols)
-            if not component.unparsed and not turned and self._equal(ring, sums, pairs, terms):
-                pairs = [replace(pair, kinds=(), weight=0.0) for pair in pairs if pair.place is not None]
-            found.append(Paired(component, pairs, form, ring))
-        return found
+        return [self._nearest(equation, k, component, turned) for k, component in enumerate(split.components)]
 
-    def _equal(self, ring: Ring, sums: list[str], pairs: Iterable[Pair], derived: Terms) -> bool:
+    def _nearest(
+        self, equation: Equation, k: int, component: PrintedComponent, turned: Mapping[str, Polynomial]
+    ) -> Paired:
+        """The pairing with the derivation in that form which leaves the least to explain."""
+        together = self.robot.ring.substituted(self.derived(equation, k), turned)
+        twins = self.publication.twins
+        ways = [self._in_form(with_names(component, twins), self.robot.ring, together)]
+        if self.forms_apart is not None and not turned:
+            apart = self.derived(equation, k, self.forms_apart)
+            ways.append(self._in_form(component, self.forms_apart.robot.ring, apart))
+        best = min(ways, key=lambda way: way.weight)
+        if component.unparsed or turned or not self._equal(best, together):
+            return best
+        read = [replace(pair, kinds=(), weight=0.0) for pair in best.pairs if pair.place is not None]
+        return replace(best, pairs=read)
+
+    def _in_form(self, component: PrintedComponent, ring: Ring, derived: Polynomial) -> Paired:
+        terms = ring.terms(derived)
+        ring = ring_of(ring, component.terms)
+        sums = with_sums(summed_angles(ring.symbols))
+        form = in_printed_form(folded(terms, sums), component.terms, angles_of(ring))
+        return Paired(component, match(component.terms, form, ring.symbols, self.publication.twins), form, ring)
+
+    def _equal(self, paired: Paired, derived: Polynomial) -> bool:
         """Whether the printed sum is equal to the derived one, whatever its form."""
-        printed = as_terms((pair.reading.coefficient, pair.reading.factors) for pair in pairs if pair.reading)
-        difference = ring.polynomial(printed) - ring.polynomial(derived)
+        printed = as_terms(_numeral(pair) for pair in paired.pairs if pair.reading)
+        return self._same(paired.ring, printed, derived)
+
+    def _same(self, ring: Ring, printed: Terms, derived: Polynomial) -> bool:
+        """Whether a sum in a text's letters is a derived polynomial."""
+        sums = with_sums(summed_angles(ring.symbols))
+        difference = ring.polynomial(renamed(printed, self.publication.twins)) - ring.polynomial(
+            self.robot.ring.terms(derived)
+        )
         return not len(ring.substituted(difference, expansions(ring, sums)))
 
     def _component(self, equation: Equation, k: int, paired: Paired, note: str) -> ComponentAudit:
@@ -271,19 +216,17 @@ class Auditor:
         again = self.publication.read(replace(equation, components="x", texts=(" ".join(texts),)))[0].components[0]
         if again.unparsed:
             return False
-        ring = ring_of(paired.ring, again.terms)
-        sums = with_sums(summed_angles(ring.symbols))
         printed = as_terms((term.readings[0].coefficient, term.readings[0].factors) for term in again.terms)
-        derived = ring.polynomial(self.robot.ring.terms(self.derived(equation, k)))
-        return not len(ring.substituted(ring.polynomial(printed) - derived, expansions(ring, sums)))
+        return self._same(ring_of(paired.ring, again.terms), printed, self.derived(equation, k))
 
     def _evidence(self, equation: Equation, k: int, paired: Paired, right: list[Numeral]) -> Evidence:
-        ring = paired.ring
-        sums = with_sums(summed_angles(ring.symbols))
-        self.witness.with_sums({name: ring.terms(x) for name, x in expansions(ring, sums).items()})
-        printed = as_terms(_numeral(pair) for pair in paired.pairs if pair.reading)
+        sums = with_sums(summed_angles(paired.ring.symbols))
+        values = {name: paired.ring.terms(x) for name, x in expansions(paired.ring, sums).items()}
+        self.witness.with_sums(values)
+        twins = self.publication.twins
+        printed = renamed(as_terms(_numeral(pair) for pair in paired.pairs if pair.reading), twins)
         place = (equation.quantity, equation.place, _axis(equation, k))
-        return weigh(self.witness, place, printed, as_terms(right))
+        return weigh(self.witness, place, printed, renamed(as_terms(right), twins))
 
 
 def _axis(equation: Equation, k: int) -> int:
@@ -303,6 +246,18 @@ def ring_of(ring: Ring, terms: Iterable[PrintedTerm]) -> Ring:
     unknown = [Symbol(name, name, Role.UNKNOWN) for name in names if name not in known]
     new = [symbol for symbol in sums if symbol.name not in ring.symbols]
     return Ring([*ring.symbols.values(), *new, *unknown]) if new or unknown else ring
+
+
+def with_names(component: PrintedComponent, names: Mapping[str, str]) -> PrintedComponent:
+    """A component read with other letters in place of some."""
+    terms = (
+        replace(
+            term,
+            readings=tuple(replace(x, factors=renamed_factors(x.factors, names)) for x in term.readings),
+        )
+        for term in component.terms
+    )
+    return replace(component, terms=tuple(terms))
 
 
 def angles_of(ring: Ring) -> list[str]:

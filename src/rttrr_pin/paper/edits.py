@@ -41,6 +41,9 @@ WEIGHT: Mapping[Kind, float] = {
 LIMIT = WEIGHT[Kind.EXTRA] + WEIGHT[Kind.MISSING]
 """From this weight on, two terms have nothing to do with each other."""
 
+REACH = 6
+"""Products that differ in more factors than this have nothing to do with each other."""
+
 POWER, SECOND_LETTER, LOST_LETTER = 1.2, 1.3, 1.4
 """The weight of a rate's power lost or added; of each of two letters exchanged; of a letter lost or added."""
 
@@ -75,7 +78,7 @@ def between_factors(printed: Factors, derived: Factors, symbols: Mapping[str, Sy
     powers, right_powers = Counter(dict(printed)), Counter(dict(derived))
     kept = powers & right_powers
     wrong, right = powers - kept, right_powers - kept
-    if wrong.total() + right.total() > 6:
+    if wrong.total() + right.total() > REACH:
         return None
     kinds, weight = _dots(wrong, right, symbols)
     if wrong and right:
@@ -84,6 +87,9 @@ def between_factors(printed: Factors, derived: Factors, symbols: Mapping[str, Sy
         weight += WEIGHT[Kind.SYMBOL] if one else SECOND_LETTER * exchanged
         weight += 0 if one else LOST_LETTER * abs(wrong.total() - right.total())
         kinds += (Kind.SYMBOL,) * exchanged
+        if one and _other_dots(symbols[next(iter(wrong))], symbols[next(iter(right))]):
+            weight += WEIGHT[Kind.RATE]
+            kinds += (Kind.RATE,)
     for name, power in (wrong or right).items() if not (wrong and right) else ():
         rate = symbols[name].role in DOTS and name in kept
         kinds += (Kind.RATE,) if rate else (Kind.SYMBOL,)
@@ -108,6 +114,11 @@ def _dots(wrong: Counter[str], right: Counter[str], symbols: Mapping[str, Symbol
             wrong.pop(name, None)
             right.pop(name, None)
     return kinds, weight
+
+
+def _other_dots(one: Symbol, other: Symbol) -> bool:
+    """Whether two letters are of different coordinates and carry another number of dots."""
+    return one.role in DOTS and other.role in DOTS and one.role is not other.role
 
 
 def _moves(symbol: Symbol, index: int) -> bool:

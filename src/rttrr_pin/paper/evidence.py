@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
@@ -18,7 +17,8 @@ from rttrr_pin.joint_motion import Body
 from rttrr_pin.newton_euler import Payload
 from rttrr_pin.oracles import make_oracle
 from rttrr_pin.symbolic.chain import SymbolicRobot
-from rttrr_pin.symbolic.ring import Ring, evaluate
+from rttrr_pin.symbolic.motion import angles
+from rttrr_pin.symbolic.ring import evaluate
 from rttrr_pin.symbolic.symbols import Terms
 
 BITS = 256
@@ -103,26 +103,28 @@ class Witness:
 
     @cached_property
     def _float_values(self) -> dict[str, Any]:
-        angles = {f"{f}_{k}": g(self.values[f"q_{k}"]) for k in self._angles for f, g in (("s", np.sin), ("c", np.cos))}
-        return self.values | {name: float(x) for name, x in angles.items()}
+        values: dict[str, Any] = dict(self.values)
+        for angle in angles(self.robot.model):
+            x = self.values[f"q_{angle.place}"] * angle.multiplier + angle.offset
+            values |= {f"s_{angle.suffix}": float(np.sin(x)), f"c_{angle.suffix}": float(np.cos(x))}
+        return values
 
     @cached_property
     def _ball_values(self) -> dict[str, Any]:
         with precision(BITS):
             values: dict[str, Any] = {name: ball(x) for name, x in self.values.items()}
-            for k in self._angles:
-                values[f"s_{k}"], values[f"c_{k}"] = values[f"q_{k}"].sin_cos()
+            for angle in angles(self.robot.model):
+                x = values[f"q_{angle.place}"] * ball(angle.multiplier) + ball(angle.offset)
+                values[f"s_{angle.suffix}"], values[f"c_{angle.suffix}"] = x.sin_cos()
         return values
-
-    @property
-    def _angles(self) -> list[str]:
-        return [name[2:] for name in self.robot.ring.symbols if name.startswith("c_") and name[2:].isdigit()]
 
     @cached_property
     def _wrenches(self) -> Any:
         loads: list[Load] = []
         for payload in self.robot.payloads:
-            f, n = (np.array([self.number(self.robot.ring.terms(x)) for x in vector]) for vector in (payload.f, payload.n))
+            f, n = (
+                np.array([self.number(self.robot.ring.terms(x)) for x in vector]) for vector in (payload.f, payload.n)
+            )
             loads.append(Load(payload.link, f, n))
         oracle = make_oracle("pinocchio", self.robot.model)
         return oracle.evaluate(self.q[None], self.v[None], self.a[None], loads).wrenches
@@ -138,8 +140,8 @@ class Witness:
         with precision(BITS):
             bodies = [self._body(body) for body in robot.bodies()]
             payloads = [Payload(x.link, self._vector(x.f), self._vector(x.n)) for x in robot.payloads]
-            states = [[ball(float(x)) for x in numbers] for numbers in (self.q, self.v, self.a)]
-            return dynamics(robot.model, BALL, *states, payloads, links=bodies, gravity=self._vector(robot.gravity))
+            q, v, a = ([ball(float(x)) for x in numbers] for numbers in (self.q, self.v, self.a))
+            return dynamics(robot.model, BALL, q, v, a, payloads, links=bodies, gravity=self._vector(robot.gravity))
 
     def _ball(self, x: Scalar) -> arb:
         return arb(evaluate(self.robot.ring.terms(x), self._ball_values, ball))
@@ -153,9 +155,7 @@ class Witness:
         return Body(body.type, self._vector(body.axis), R, p, self._ball(body.M), r_C, I)
 
 
-def weigh(
-    witness: Witness, component: tuple[str, int, int], printed: Terms, corrected: Terms
-) -> Evidence:
+def weigh(witness: Witness, component: tuple[str, int, int], printed: Terms, corrected: Terms) -> Evidence:
     """What numbers say of a component as printed and as corrected."""
     pinocchio, truth = witness.pinocchio(*component), witness.recursion(*component)
     known = witness.knows(printed)
@@ -168,10 +168,3 @@ def weigh(
         enclosed=bool(mended.overlaps(truth)) and narrow,
         excluded=not witness.enclosure(printed).overlaps(truth) if known else None,
     )
-
-
-def dimensionally_right(factors: Any, ring: Ring, wanted: Any, unknown: Sequence[str]) -> bool | None:
-    """Whether a product has the dimension of its quantity; None where it has an unknown symbol."""
-    return None if unknown else ring.dimension(factors) == wanted
-
-

@@ -6,7 +6,7 @@ from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from itertools import combinations
+from itertools import combinations, pairwise
 
 from rttrr_pin.paper.edits import Kind
 from rttrr_pin.paper.match import Numeral, Pair
@@ -95,7 +95,7 @@ def _hints(pairs: Sequence[Pair]) -> dict[int, str]:
                 hints[id(one)] = hints[id(other)] = "run together with another missing term, into one product"
     printed = [pair for pair in pairs if pair.place is not None]
     for lacking in missing:
-        for one, other in zip(printed, printed[1:], strict=False):
+        for one, other in pairwise(printed):
             if (one.kinds or other.kinds) and lacking.derived and _printed_product(one, other) == _powers(lacking):
                 hints[id(lacking)] = "the product of two neighbours as printed: the sign between them is too many"
     return hints

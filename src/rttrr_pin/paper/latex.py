@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rttrr_pin.paper.grammar import UnreadableError, parse, tokens_of
+from rttrr_pin.paper.grammar import UnreadableError, parse
 from rttrr_pin.paper.layout import Part, layouts
 from rttrr_pin.paper.printed import PrintedComponent, Split
 from rttrr_pin.paper.products import terms_of
@@ -25,7 +25,7 @@ def read_latex(text: str, vocabulary: Vocabulary, components: int = 1) -> tuple[
         exception: `PrintedComponent.unparsed` says where and why, and nothing of that component is given.
     """
     try:
-        found = layouts(tokens_of(text), components)
+        found = layouts(text, components)
     except UnreadableError as error:
         unread = PrintedComponent(" ".join(text.split()), (), error.placed(text))
         return (Split((unread,) * components),)
@@ -42,4 +42,5 @@ def _component(part: Part, vocabulary: Vocabulary, text: str) -> PrintedComponen
     except UnreadableError as error:
         return PrintedComponent(printed, (), error.placed(text))
     except RecursionError:
-        return PrintedComponent(printed, (), "the brackets are nested too deep; print them expanded")
+        fault = UnreadableError("too many brackets in each other; print them expanded", part.start)
+        return PrintedComponent(printed, (), fault.placed(text))

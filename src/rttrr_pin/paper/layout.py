@@ -12,7 +12,7 @@ from itertools import combinations, pairwise
 
 from lark import Token
 
-from rttrr_pin.paper.grammar import UnreadableError, end_of, start_of
+from rttrr_pin.paper.grammar import SHOWN, UnreadableError, end_of, start_of, tokens_of
 from rttrr_pin.paper.rows import Row, rows_of
 
 MOST = 200
@@ -48,25 +48,25 @@ class Layout:
     note: str = ""
 
 
-def layouts(tokens: Sequence[Token], components: int) -> list[Layout]:
+def layouts(text: str, components: int) -> list[Layout]:
     """The ways to divide a display into components.
 
     Args:
-        tokens: of the whole display.
+        text: of the whole display.
         components: how many it states.
 
     Raises:
         UnreadableError: the display has another number of components, or is no display of equations.
     """
-    rows, matrix = rows_of(tokens)
+    rows, matrix = rows_of(tokens_of(text))
     if not rows:
         raise UnreadableError("there is no equation here", 0)
-    found = [_layout(rows, starts, note) for starts, note in _divisions(rows, matrix, components)]
+    found = [_layout(rows, starts, note) for starts, note in _divisions(text, rows, matrix, components)]
     sound = [layout for layout in found if not any(part.fault for part in layout.parts)]
     return sound or found
 
 
-def _divisions(rows: Sequence[Row], matrix: bool, components: int) -> list[tuple[tuple[int, ...], str]]:
+def _divisions(text: str, rows: Sequence[Row], matrix: bool, components: int) -> list[tuple[tuple[int, ...], str]]:
     """The rows at which components after the first may begin, with notes."""
     breaks = range(1, len(rows))
     wanted = components - 1
@@ -89,10 +89,10 @@ def _divisions(rows: Sequence[Row], matrix: bool, components: int) -> list[tuple
             "state the right number of components, or end a row that goes on with its sign",
             start_of(rows[0].tokens[0]),
         )
-    return _guessed(rows, certain, wanted)
+    return _guessed(text, rows, certain, wanted)
 
 
-def _guessed(rows: Sequence[Row], certain: Sequence[int], wanted: int) -> list[tuple[tuple[int, ...], str]]:
+def _guessed(text: str, rows: Sequence[Row], certain: Sequence[int], wanted: int) -> list[tuple[tuple[int, ...], str]]:
     """The certain boundaries, and each choice of line breaks for those that are lost."""
     others = [i for i in range(1, len(rows)) if i not in certain]
     found: list[tuple[tuple[int, ...], str]] = []
@@ -100,12 +100,19 @@ def _guessed(rows: Sequence[Row], certain: Sequence[int], wanted: int) -> list[t
         if len(found) == MOST:
             raise UnreadableError(f"the display can be divided in more than {MOST} ways", start_of(rows[0].tokens[0]))
         starts = tuple(sorted((*certain, *added)))
-        places = " and ".join(f"{starts.index(i) + 2} begins with row {i + 1}, {rows[i].beginning!r}" for i in added)
+        places = " and ".join(
+            f"{starts.index(i) + 2} begins with row {i + 1}, {_beginning(text, rows[i])!r}" for i in added
+        )
         note = f"the boundary is not printed: component {places}"
         if any(rows[i - 1].open_end for i in added):
             note += "; the sign at the end of the row before it left out"
         found.append((starts, note))
     return found
+
+
+def _beginning(text: str, row: Row) -> str:
+    start = start_of(row.tokens[0])
+    return " ".join(text[start : start + SHOWN].split())
 
 
 def _layout(rows: Sequence[Row], starts: Sequence[int], note: str) -> Layout:
@@ -116,10 +123,14 @@ def _layout(rows: Sequence[Row], starts: Sequence[int], note: str) -> Layout:
         start, end = start_of(lines[0][0]), end_of(lines[-1][-1])
         if stop < len(rows) and rows[stop - 1].open_end:
             lines[-1] = lines[-1][:-1]
-        notes += [
-            f"the bracket {str(token)!r} of component {len(parts) + 1} has no partner, left out"
-            for token in _unpaired(lines)
-        ]
+        notes += (
+            []
+            if not starts
+            else [
+                f"the bracket {str(token)!r} of component {len(parts) + 1} has no partner, left out"
+                for token in _unpaired(lines)
+            ]
+        )
         parts.append(_part(lines, start, end))
     return Layout(tuple(parts), "; ".join(notes))
 

@@ -30,7 +30,8 @@ class Atom:
             text = f"{accent}{{{text}}}"
         prefix = f"{{}}^{braced(self.prefix)}" if self.prefix else ""
         subscript = f"_{braced(self.subscript)}" if self.subscript else ""
-        superscript = f"^{braced(self.superscript)}" if self.superscript else ""
+        primes = not self.superscript.strip("'")
+        superscript = self.superscript if primes else f"^{braced(self.superscript)}"
         return f"{prefix}{text}{subscript}{superscript}"
 
 

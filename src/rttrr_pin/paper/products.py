@@ -117,7 +117,9 @@ class _Literal:
         if factor.operator == "/":
             raise UnreadableError("only numbers may divide; write the quotient out as a product", factor.start)
         if not 0 <= factor.power <= LARGEST_POWER:
-            raise UnreadableError(f"wanted a power from 0 to {LARGEST_POWER}, got {factor.power}", factor.start)
+            raise UnreadableError(
+                f"wanted a power from 0 to {LARGEST_POWER}, got {factor.power}; write the power out", factor.start
+            )
 
 
 def _constant(terms: Terms, factor: Factor) -> Fraction:

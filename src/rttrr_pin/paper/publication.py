@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from rttrr_pin.paper.arm import LINK_KEYS, read_robot
-from rttrr_pin.paper.latex import Vocabulary, read_latex
+from rttrr_pin.paper.arm import read_robot
+from rttrr_pin.paper.latex import read_latex
 from rttrr_pin.paper.match import as_terms
 from rttrr_pin.paper.printed import Split
 from rttrr_pin.paper.python import read_python
 from rttrr_pin.paper.tables import Table, read_table
-from rttrr_pin.paper.templates import filled, symbols_of
-from rttrr_pin.symbolic.chain import SymbolicRobot
-from rttrr_pin.symbolic.symbols import Symbol, Terms
+from rttrr_pin.paper.templates import filled, letters_in
+from rttrr_pin.paper.vocabulary import Vocabulary
+from rttrr_pin.symbolic.chain import Letters, SymbolicRobot
+from rttrr_pin.symbolic.symbols import Symbol, Terms, renamed
 
 DATA = Path(__file__).parent / "data"
 RTTRR = DATA / "rttrr_2016_conventions.toml"
@@ -95,6 +96,7 @@ class Publication:
         language: "latex" or "python".
         robot: the robot in its letters.
         spellings: the name of the symbol that each spelling stands for.
+        twins: letters that are kept apart from one that they are equal to, as J_yx is from J_xy.
         equations: as printed, in order.
         conventions: what the text leaves to the reader.
     """
@@ -104,8 +106,29 @@ class Publication:
     language: str
     robot: SymbolicRobot
     spellings: Mapping[str, str]
+    twins: Mapping[str, str]
     equations: tuple[Equation, ...]
     conventions: tuple[Convention, ...]
+
+    @cached_property
+    def apart(self) -> SymbolicRobot | None:
+        """The robot with the letters below the diagonal of its tensors kept apart; None where the text does not."""
+        if not self.twins:
+            return None
+        letters = self.robot.letters
+        other = {main: twin for twin, main in self.twins.items()}
+        slots = dict(letters.slots)
+        for slot, terms in letters.slots.items():
+            if slot[0] == "inertia" and str(slot[2]) > str(slot[3]):
+                slots[slot] = renamed(terms, other)
+        named = {symbol.name: symbol for symbol in letters.symbols}
+        new = [replace(named[main], name=twin, latex=self.spelling_of(twin)) for twin, main in self.twins.items()]
+        values = {**letters.values, **{twin: letters.values[main] for twin, main in self.twins.items()}}
+        return replace(self.robot, letters=Letters((*letters.symbols, *new), slots, values))
+
+    def spelling_of(self, name: str) -> str:
+        """How a symbol is printed."""
+        return next(spelling for spelling, stands_for in self.spellings.items() if stands_for == name)
 
     @cached_property
     def vocabulary(self) -> Vocabulary:
@@ -143,13 +166,21 @@ def read_publication(path: Path = RTTRR) -> Publication:
     links = sum("mass" in link.entries for link in file.tables("link"))
     symbols: dict[str, Symbol] = {}
     spellings: dict[str, str] = {}
+    twins: dict[str, str] = {}
     for table in file.tables("symbol", "[[symbol]]"):
-        for symbol, printed in symbols_of(table, links):
-            if symbol.name in symbols:
-                raise table.error(f"symbol {symbol.name!r} is declared twice: leave one")
-            symbols[symbol.name] = symbol
-            spellings |= dict.fromkeys(printed, symbol.name)
-    robot = read_robot(file, list(symbols.values()), _expression(symbols), _finder(path))
+        for letter in letters_in(table, links):
+            name = letter.symbol.name
+            if name in symbols:
+                raise table.error(f"symbol {name!r} is declared twice: leave one")
+            symbols[name] = letter.symbol
+            spellings |= dict.fromkeys(letter.spellings, name)
+            if letter.equal:
+                twins[name] = letter.equal
+    strangers = [name for name in twins.values() if name not in symbols or name in twins]
+    if strangers:
+        raise file.error(f"a symbol is said to be equal to {strangers[0]!r}: expected the name of another symbol")
+    letters = [symbol for name, symbol in symbols.items() if name not in twins]
+    robot = read_robot(file, letters, _expression(symbols), _finder(path))
     spellings |= _moving(file, robot, language)
     return Publication(
         title=file.get("title", str, path.stem),
@@ -157,6 +188,7 @@ def read_publication(path: Path = RTTRR) -> Publication:
         language=language,
         robot=robot,
         spellings=spellings,
+        twins=twins,
         equations=tuple(_equations(file, path, robot, language)),
         conventions=tuple(_conventions(file, symbols)),
     )
@@ -266,6 +298,3 @@ def _conventions(file: Table, symbols: Mapping[str, Symbol]) -> list[Convention]
         numbers = tuple(table.get("equations", list, []))
         found.append(Convention(table.get("title", str), table.get("text", str), numbers, tuple(flip)))
     return found
-
-
-__all__ = ["LINK_KEYS", "RTTRR", "Convention", "Equation", "Publication", "read_publication"]

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 
 from lark import Token
 
-from rttrr_pin.paper.grammar import UnreadableError, start_of
+from rttrr_pin.paper.grammar import UnreadableError, parse, start_of
+from rttrr_pin.paper.nodes import Factor
+from rttrr_pin.paper.trees import products_of
 
 MATRICES = {"matrix", "bmatrix", "pmatrix", "Bmatrix", "smallmatrix", "array"}
 """Environments of which each row is a component, or each cell of the only row."""
@@ -19,9 +21,6 @@ LINES = {
 """Environments of lines."""
 
 OPENING, CLOSING, STOPS = ("LPAR", "LSQB", "LCURLY"), ("RPAR", "RSQB", "RCURLY"), ("STOP", "COMMA")
-
-SHOWN = 8
-"""Tokens that a note shows of a row."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,11 +44,6 @@ class Row:
     def signed(self) -> bool:
         """It begins with a sign or an operator, so that it may go on a sum."""
         return self.tokens[0].type in ("SIGN", "TIMES", "STAR", "SLASH")
-
-    @property
-    def beginning(self) -> str:
-        """Its first tokens."""
-        return " ".join(self.tokens[:SHOWN])
 
 
 def rows_of(tokens: Sequence[Token]) -> tuple[list[Row], bool]:
@@ -79,7 +73,7 @@ def _without_tags(tokens: Sequence[Token]) -> list[Token]:
         kept = kept[:-3]
     after = [token.type for token in kept[1:]] + ["END"]
     ending = ("END", "BREAK", "TAG", *STOPS)
-    return [token for token, follows in zip(kept, after, strict=True) if token.type != "TAG" or follows not in ending]
+    return [token for token, follows in zip(kept, after, strict=False) if token.type != "TAG" or follows not in ending]
 
 
 def _without_lines(tokens: Sequence[Token]) -> list[Token]:
@@ -127,21 +121,26 @@ def _row(line: list[Token]) -> Row:
 
 
 def _right(left: list[Token], right: list[Token]) -> list[Token]:
-    """The side that is no mere name."""
-    return left if right and _name(right) and not _name(left) else right
+    """The side to be read: the other is the name of what it gives."""
+    if _is_name(left):
+        return right
+    if _is_name(right):
+        return left
+    message = "one side of = is wanted as one symbol, the name of what the other gives; take its other terms across"
+    raise UnreadableError(message, start_of((left + right)[0]) if left or right else 0)
 
 
-def _name(side: Sequence[Token]) -> bool:
-    """A side that is one letter with its scripts: no operator stands in it, and one token at most is a base."""
-    depth = bases = 0
-    script = False
-    for token in side:
-        if token.type in ("LBRACE", "RBRACE"):
-            depth += 1 if token.type == "LBRACE" else -1
-        elif depth == 0 and not script:
-            bases += token.type in ("LETTER", "GREEK", "NUMBER", "ACCENT", "STYLE", "SIGN", "FUNCTION", *OPENING)
-        script = token.type in ("CARET", "UNDERSCORE")
-    return bases <= 1 and all(token.type not in ("TIMES", "SIGN", "NUMBER") for token in side[:1])
+def _is_name(side: Sequence[Token]) -> bool:
+    """A side that is one symbol, with a power or without."""
+    try:
+        products = products_of(parse(side, 0))
+    except UnreadableError:
+        return False
+    return len(products) == 1 and not products[0].signs and _one_symbol(products[0].factors)
+
+
+def _one_symbol(factors: Sequence[Factor]) -> bool:
+    return len(factors) == 1 and factors[0].atom is not None
 
 
 def _around(before: Sequence[Token], after: Sequence[Token]) -> None:
@@ -151,11 +150,13 @@ def _around(before: Sequence[Token], after: Sequence[Token]) -> None:
         right.pop()
     if left and left[-1].type in OPENING and right and right[0].type in CLOSING:
         left, right = left[:-1], right[1:]
-    if left and left[-1].type != "EQUALS":
-        message = "only a left-hand side may stand before the matrix; multiply its rows out"
+    left = [token for token in left if token.type != "AMPERSAND"]
+    if left and (left[-1].type != "EQUALS" or not _is_name(left[:-1])):
+        message = "only one symbol and = may stand before the matrix; multiply its rows out"
         raise UnreadableError(message, start_of(left[0]))
-    if right and right[0].type != "EQUALS":
-        raise UnreadableError("nothing may stand behind the matrix; add it to its rows", start_of(right[0]))
+    if right and (left or right[0].type != "EQUALS" or not _is_name(right[1:])):
+        message = "only = and one symbol may stand behind the matrix; add the rest to its rows"
+        raise UnreadableError(message, start_of(right[0]))
 
 
 def _cells(tokens: Sequence[Token]) -> list[Row]:

@@ -74,7 +74,9 @@ class Table:
         value = self.entries.get(key)
         entries = value if isinstance(value, list) else [value]
         if any(isinstance(x, bool) or not isinstance(x, str | int | float) for x in entries):
-            raise self.error(f"{key} is {value!r}: expected a list of texts" if key in self.entries else f"lacks {key!r}")
+            raise self.error(
+                f"{key} is {value!r}: expected a list of texts" if key in self.entries else f"lacks {key!r}"
+            )
         if count is not None and len(entries) != count:
             raise self.error(f"{key} has {len(entries)} entries, expected {count}: {value!r}")
         return [x if isinstance(x, str) else repr(x) for x in entries]

@@ -3,10 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import product
 
 from rttrr_pin.paper.tables import Table
-from rttrr_pin.symbolic.symbols import ACCELERATION, FORCE, INERTIA, LENGTH, MASS, MOMENT, NUMBER, Dimension, Role, Symbol
+from rttrr_pin.symbolic.symbols import (
+    ACCELERATION,
+    FORCE,
+    INERTIA,
+    LENGTH,
+    MASS,
+    MOMENT,
+    NUMBER,
+    Dimension,
+    Role,
+    Symbol,
+)
 
 DIMENSIONS: Mapping[str, Dimension] = {
     "number": NUMBER,
@@ -22,11 +34,26 @@ DIMENSIONS: Mapping[str, Dimension] = {
 
 AXES, PAIRS = ("x", "y", "z"), ("xy", "xz", "yz")
 
-KEYS = ("name", "latex", "dimension", "i", "k", "value")
+KEYS = ("name", "latex", "dimension", "equal", "i", "k")
 
 
-def symbols_of(table: Table, links: int) -> Iterator[tuple[Symbol, tuple[str, ...]]]:
-    """The symbols that an entry of [[symbol]] stands for, each with its spellings.
+@dataclass(frozen=True, slots=True)
+class Letter:
+    """A symbol as a table declares it.
+
+    Attributes:
+        symbol: the symbol.
+        spellings: how it is printed; corrections use the first.
+        equal: the name of the letter that it is equal to, as J_yx is to J_xy; empty for most.
+    """
+
+    symbol: Symbol
+    spellings: tuple[str, ...]
+    equal: str = ""
+
+
+def letters_in(table: Table, links: int) -> Iterator[Letter]:
+    """The symbols that an entry of [[symbol]] stands for.
 
     Args:
         table: the entry.
@@ -46,7 +73,8 @@ def symbols_of(table: Table, links: int) -> Iterator[tuple[Symbol, tuple[str, ..
         if not identifier.isidentifier():
             raise table.error(f"name is {identifier!r}: expected letters, digits and _, such as r_C1x")
         printed = tuple(dict.fromkeys(filled(spelling, values, latex=True) for spelling in spellings))
-        yield Symbol(identifier, printed[0], Role.PARAMETER, DIMENSIONS[dimension]), printed
+        symbol = Symbol(identifier, printed[0], Role.PARAMETER, DIMENSIONS[dimension])
+        yield Letter(symbol, printed, filled(table.get("equal", str, ""), values))
 
 
 def _combinations(table: Table, texts: Sequence[str], links: int) -> Iterator[dict[str, str]]:

@@ -113,6 +113,9 @@ def _base(node: Node) -> Factor:
         return Factor(Group(products, *_span(sums[0]), divisor), start, end)
     if isinstance(node, Token) and node.type == "NUMBER":
         return Factor(Fraction(str(node)), start, end)
+    if isinstance(node, Token) and node.type == "SHORT_FRACTION":
+        above, below = (character for character in node if character.isdigit())
+        return Factor(Fraction(int(above), int(below)), start, end)
     return Factor(_symbol(node), start, end)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 
 from rttrr_pin.errors import InputError
 from rttrr_pin.paper.grammar import UnreadableError
@@ -25,6 +25,13 @@ def index_of(name: str) -> int | None:
     """The index of a coordinate by its name; None for any other name."""
     digits = name.removeprefix(COORDINATE)
     return int(digits) if name.startswith(COORDINATE) and digits.isdecimal() else None
+
+
+def unclashing(name: str, known: Collection[str]) -> str:
+    """A name for a symbol that is not known, with `_` behind it as often as it takes to be no known symbol's."""
+    function, *indices = name.split("_")
+    angle = function in FUNCTIONS.values() and bool(indices) and all(index.isdecimal() for index in indices)
+    return unclashing(f"{name}_", known) if angle or name in known else name
 
 
 class Vocabulary:
@@ -101,16 +108,7 @@ class Vocabulary:
         letters = "_".join(_plain(part) for part in (*atom.accents, atom.letters))
         prefix, subscript = _plain(atom.prefix), _plain(atom.subscript)
         scripts = ("" if prefix in subscript else prefix) + subscript + _plain(atom.superscript)
-        name = f"{letters}_{scripts}" if scripts else letters
-        while name in self.names or _like_angle(name):
-            name += "_"
-        return name
-
-
-
-def _like_angle(name: str) -> bool:
-    function, *indices = name.split("_")
-    return function in FUNCTIONS.values() and bool(indices) and all(index.isdecimal() for index in indices)
+        return unclashing(f"{letters}_{scripts}" if scripts else letters, self.names)
 
 
 def _plain(text: str) -> str:

@@ -12,6 +12,7 @@ from rttrr_pin.arithmetic import ROTATION_ERROR
 from rttrr_pin.joint_motion import Body
 from rttrr_pin.model import Joint, Link, Model
 from rttrr_pin.newton_euler import Payload
+from rttrr_pin.symbolic.motion import angles, index, motion_symbols
 from rttrr_pin.symbolic.ring import Polynomial, Ring, exact
 from rttrr_pin.symbolic.symbols import (
     ACCELERATION,
@@ -20,7 +21,6 @@ from rttrr_pin.symbolic.symbols import (
     LENGTH,
     MASS,
     MOMENT,
-    NUMBER,
     Dimension,
     Role,
     Symbol,
@@ -30,6 +30,9 @@ from rttrr_pin.symbolic.symbols import (
 Slot = tuple[str | int, ...]
 """One number of a robot: ("mass", i), ("com", i, x), ("inertia", i, x, y), ("origin", i, x), ("gravity", x), and of the
 payload ("force", x), ("moment", x); links and joints i from 0, axes x, y of 0, 1, 2."""
+
+Named = tuple[Symbol, int, tuple[Slot, ...]]
+"""A letter, its sign (1, or -1 where it stands for minus the number), and the numbers that it stands for."""
 
 SLOT_DIMENSION: Mapping[str, Dimension] = {
     "mass": MASS,
@@ -43,6 +46,9 @@ SLOT_DIMENSION: Mapping[str, Dimension] = {
 """The dimension of each kind of slot."""
 
 AXES = "xyz"
+
+RIGHT_ANGLE_ERROR = 1e-4
+"""How far an entry of a rotation is from 0, 1 or -1 at most where a right angle was meant, and few digits written."""
 
 
 @dataclass(frozen=True)
@@ -68,21 +74,26 @@ class SymbolicRobot:
         model: the structure, and the numbers that the letters stand for.
         letters: which letter stands for which number.
         payload_link: index of the link that the payload acts at; None: there is no payload.
+        right_angles: whether an entry of a rotation within 1e-4 of 0, 1 or -1 is read as that number: files write
+            1.5708 where they mean a right angle.
+        steps: symbols for what is named on the way; none where all is written out.
     """
 
     model: Model
     letters: Letters
     payload_link: int | None = None
+    right_angles: bool = False
+    steps: tuple[Symbol, ...] = ()
 
     @cached_property
     def ring(self) -> Ring:
-        """The polynomials in all symbols: coordinates, rates, accelerations, sines, cosines, letters."""
-        return Ring([*self.motion, *self.letters.symbols])
+        """The polynomials in all symbols: coordinates, rates, accelerations, sines, cosines, letters, steps."""
+        return Ring([*self.motion, *self.letters.symbols, *self.steps])
 
     @cached_property
     def motion(self) -> tuple[Symbol, ...]:
         """Coordinates, rates, accelerations, their sines, cosines and signs."""
-        return tuple(_motion_symbols(self.model))
+        return tuple(motion_symbols(self.model))
 
     @property
     def q(self) -> list[Polynomial]:
@@ -121,15 +132,18 @@ class SymbolicRobot:
         suffix = self._angles[str(self.ring.lift(angle))]
         return self.ring[f"s_{suffix}"], self.ring[f"c_{suffix}"]
 
-    def sign(self, rate: Scalar) -> Polynomial:
-        """The symbol for the sign of a rate."""
-        return self.ring["sign_" + str(rate).removeprefix("v_")]
+    def sign(self, rate: Scalar) -> Scalar:
+        """The symbol for the sign of a rate, or of a multiple of one; 0 for no rate."""
+        for ((name, _),), multiple in self.ring.terms(rate).items():
+            sign = self.ring["sign_" + name.removeprefix("v_")]
+            return sign if multiple > 0 else -sign
+        return 0
 
     def _body(self, i: int, joint: Joint, link: Link) -> Body:
         return Body(
             type=joint.type,
             axis=Vector.of(joint.axis, exact),
-            R=Matrix.of(joint.R, _direction),
+            R=Matrix.of(joint.R, self._direction),
             p=self._vector("origin", (i,), joint.p),
             M=self._number(("mass", i), link.mass),
             r_C=self._vector("com", (i,), link.com),
@@ -146,71 +160,24 @@ class SymbolicRobot:
             return self.ring.polynomial(self.letters.slots[slot])
         return exact(value) if value else 0
 
+    def _direction(self, value: float) -> Scalar:
+        """An entry of a rotation: 0, 1 or -1 where it is so within the rounding of the sines that made it."""
+        near = RIGHT_ANGLE_ERROR if self.right_angles else ROTATION_ERROR
+        return round(value) if abs(value - round(value)) <= near else exact(value)
+
     @cached_property
     def _angles(self) -> dict[str, str]:
         """The suffix of the sine and cosine of each angle, by the angle's polynomial."""
-        suffixes = {str(self.ring[f"q_{k}"]): str(k) for k in angle_places(self.model)}
-        for i, joint in enumerate(self.model.joints):
-            if joint.mimic is not None and joint.type.rotates:
-                followed = self.ring[f"q_{_first_coordinate(self.model, joint.mimic.joint)}"]
-                angle = followed * exact(joint.mimic.multiplier) + exact(joint.mimic.offset)
-                suffixes[str(self.ring.lift(angle))] = f"j{i + 1}"
-        return suffixes
+        return {
+            str(self.ring[f"q_{angle.place}"] * exact(angle.multiplier) + exact(angle.offset)): angle.suffix
+            for angle in angles(self.model)
+        }
 
 
-def _direction(value: float) -> Scalar:
-    """An entry of a rotation: 0, 1 or -1 where it is so within the rounding of the sines that made it."""
-    return round(value) if abs(value - round(value)) <= ROTATION_ERROR else exact(value)
-
-
-def angle_places(model: Model) -> Iterator[int]:
-    """The places in q, from 1, of the coordinates that are angles."""
-    for place, angle in enumerate(_coordinates(model), start=1):
-        if angle is None:
-            yield place
-
-
-def _coordinates(model: Model) -> Iterator[Dimension | None]:
-    """The dimension of each coordinate; None for an angle."""
-    for joint in model.moving:
-        for slot in joint.type.q_slots:
-            if slot == "theta" or (not slot and joint.type.rotates):
-                yield None
-            else:
-                yield NUMBER if slot.startswith("q") else LENGTH
-
-
-def _first_coordinate(model: Model, joint: int) -> int:
-    """The place in q, from 1, of the first coordinate of a joint."""
-    return 1 + sum(model.joints[i].nq for i in model.independent if i < joint)
-
-
-def _motion_symbols(model: Model) -> Iterator[Symbol]:
-    """The symbols of all that changes with time."""
-    for k, dimension in enumerate(_coordinates(model), start=1):
-        yield Symbol(f"q_{k}", f"q_{_index(k)}", Role.COORDINATE, dimension or NUMBER, k)
-        if dimension is None:
-            yield Symbol(f"s_{k}", f"sq_{_index(k)}", Role.SINE, index=k)
-            yield Symbol(f"c_{k}", f"cq_{_index(k)}", Role.COSINE, index=k)
-    for i, joint in enumerate(model.joints):
-        if joint.mimic is not None and joint.type.rotates:
-            yield Symbol(f"s_j{i + 1}", rf"s\varphi_{_index(i + 1)}", Role.SINE, index=i + 1)
-            yield Symbol(f"c_j{i + 1}", rf"c\varphi_{_index(i + 1)}", Role.COSINE, index=i + 1)
-    letter = "q" if model.nq == model.nv else None
-    rotations = [rotation for joint in model.moving for rotation in joint.type.rotations]
-    for k, rotation in enumerate(rotations, start=1):
-        rate, twice = (rf"\dot{{q}}_{_index(k)}", rf"\ddot{{q}}_{_index(k)}")
-        if letter is None:
-            rate, twice = f"v_{_index(k)}", rf"\dot{{v}}_{_index(k)}"
-        length = 0 if rotation else 1
-        yield Symbol(f"v_{k}", rate, Role.RATE, Dimension(length=length, time=-1), k)
-        yield Symbol(f"a_{k}", twice, Role.ACCELERATION, Dimension(length=length, time=-2), k)
-        yield Symbol(f"sign_{k}", rf"\operatorname{{sgn}}({rate})", Role.SIGN, index=k)
-
-
-def _index(k: int) -> str:
-    """A number as a LaTeX subscript."""
-    return str(k) if k < 10 else f"{{{k}}}"
+def almost_right_angles(model: Model) -> int:
+    """How many entries of the robot's rotations are near 0, 1 or -1 and are not so by rounding alone."""
+    errors = [abs(float(value) - round(value)) for joint in model.joints for value in joint.R.ravel()]
+    return sum(ROTATION_ERROR < error <= RIGHT_ANGLE_ERROR for error in errors)
 
 
 def parameter(slot: Slot, name: str, latex: str) -> Symbol:
@@ -235,14 +202,16 @@ def value_of_slot(model: Model, slot: Slot) -> float:
     return float(model.gravity[i[0]]) if kind == "gravity" else 0.0
 
 
-def letters_of(model: Model, named: Iterable[tuple[Symbol, int, tuple[Slot, ...]]]) -> Letters:
+def letters_of(model: Model, named: Iterable[Named]) -> Letters:
     """The letters that stand each for one number of a robot, in one place or in several.
 
     Args:
         model: the robot.
         named: for each letter its symbol, its sign (1, or -1 where it stands for minus the number), and the slots.
     """
-    symbols, slots, values = [], {}, {}
+    symbols: list[Symbol] = []
+    slots: dict[Slot, Terms] = {}
+    values: dict[str, float] = {}
     for symbol, sign, places in named:
         symbols.append(symbol)
         values[symbol.name] = sign * value_of_slot(model, places[0])
@@ -252,35 +221,43 @@ def letters_of(model: Model, named: Iterable[tuple[Symbol, int, tuple[Slot, ...]
 
 
 def default_letters(model: Model, payload_link: int | None = None) -> Letters:
-    """Letters for every number of a robot that is not zero, after the paper's: M, r_C, J*, and p for the joints' origins.
+    """Letters for a robot's numbers that are not zero, after the paper's: M, r_C, J*, and p for the joints' origins.
 
     The payload is named after its link. J_xy, J_xz, J_yz are minus the matrix elements, as the paper has them.
     """
-    named: list[tuple[Symbol, int, tuple[Slot, ...]]] = []
+    named = [*_link_letters(model), *_gravity_letters()]
+    used = [letter for letter in named if value_of_slot(model, letter[2][0])]
+    return letters_of(model, [*used, *(() if payload_link is None else _payload_letters(payload_link))])
 
-    def name(slots: tuple[Slot, ...], identifier: str, latex: str, sign: int = 1, always: bool = False) -> None:
-        if always or value_of_slot(model, slots[0]):
-            named.append((parameter(slots[0], identifier, latex), sign, slots))
 
+def _link_letters(model: Model) -> Iterator[Named]:
     for i in range(len(model.links)):
-        link, up = i + 1, f"{{}}^{_index(i + 1)}"
+        link, up = i + 1, f"{{}}^{index(i + 1)}"
         for x, axis in enumerate(AXES):
-            name((("origin", i, x),), f"p_{link}{axis}", f"p_{{{link}{axis}}}")
-        name((("mass", i),), f"M_{link}", f"M_{_index(link)}")
+            yield _letter((("origin", i, x),), f"p_{link}{axis}", f"p_{{{link}{axis}}}")
+        yield _letter((("mass", i),), f"M_{link}", f"M_{index(link)}")
         for x, axis in enumerate(AXES):
-            name((("com", i, x),), f"r_C{link}{axis}", f"{up}r_{{C_{{{link}{axis}}}}}")
+            yield _letter((("com", i, x),), f"r_C{link}{axis}", f"{up}r_{{C_{{{link}{axis}}}}}")
         for x, axis in enumerate(AXES):
-            name((("inertia", i, x, x),), f"J_{link}{axis}", f"{up}J_{axis}^*")
+            yield _letter((("inertia", i, x, x),), f"J_{link}{axis}", f"{up}J_{axis}^*")
         for x, y in ((0, 1), (0, 2), (1, 2)):
             pair = AXES[x] + AXES[y]
-            name((("inertia", i, x, y), ("inertia", i, y, x)), f"J_{link}{pair}", f"{up}J_{{{pair}}}^*", -1)
-    for x, axis in enumerate(AXES):
-        upright = axis == "z"
-        name((("gravity", x),), "g" if upright else f"g_{axis}", "g" if upright else f"g_{axis}", -1)
-    if payload_link is not None:
-        up = f"{{}}^{_index(payload_link + 1)}"
-        for kind, letter in (("force", "f"), ("moment", "n")):
-            for x, axis in enumerate(AXES):
-                name(((kind, x),), f"{letter}_tool_{axis}", rf"{up}{letter}_{{\mathrm{{tool}},{axis}}}", always=True)
-    return letters_of(model, named)
+            places: tuple[Slot, ...] = (("inertia", i, x, y), ("inertia", i, y, x))
+            yield _letter(places, f"J_{link}{pair}", f"{up}J_{{{pair}}}^*", -1)
 
+
+def _gravity_letters() -> Iterator[Named]:
+    for x, axis in enumerate(AXES):
+        letter = "g" if axis == "z" else f"g_{axis}"
+        yield _letter((("gravity", x),), letter, letter, -1)
+
+
+def _payload_letters(link: int) -> Iterator[Named]:
+    up = f"{{}}^{index(link + 1)}"
+    for kind, letter in (("force", "f"), ("moment", "n")):
+        for x, axis in enumerate(AXES):
+            yield _letter(((kind, x),), f"{letter}_tool_{axis}", rf"{up}{letter}_{{\mathrm{{tool}},{axis}}}")
+
+
+def _letter(slots: tuple[Slot, ...], identifier: str, latex: str, sign: int = 1) -> Named:
+    return parameter(slots[0], identifier, latex), sign, slots

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
 from rttrr_pin.algebra import ZERO, Matrix, Vector
 from rttrr_pin.arithmetic import Arithmetic, Result, dynamics
 from rttrr_pin.joint_motion import Body
+from rttrr_pin.newton_euler import Keep
 from rttrr_pin.symbolic.chain import SymbolicRobot
 from rttrr_pin.symbolic.ring import Polynomial, exact
 
@@ -32,18 +33,34 @@ class ClosedForms:
     tau: list[Polynomial]
 
 
-def closed_forms(robot: SymbolicRobot) -> ClosedForms:
+class TooLongError(Exception):
+    """A closed form has more terms than it may; caught where another form can be taken."""
+
+
+def closed_forms(robot: SymbolicRobot, most_terms: int | None = None) -> ClosedForms:
     """Run the specification on symbols.
 
     Args:
         robot: the robot in symbols.
+        most_terms: how many terms a component of a vector may have; None for any number.
 
     Returns:
         Polynomials, reduced modulo c^2 + s^2 = 1.
+
+    Raises:
+        TooLongError: some component has more terms.
     """
     ring = robot.ring
-    result = _run(robot, robot.bodies())
-    moved = _run(robot, [replace(body, M=1, I=Matrix((ZERO, ZERO, ZERO))) for body in robot.bodies()])
+
+    def keep(x: Vector) -> Vector:
+        reduced = ring.reduced_vector(x)
+        if most_terms is not None and max(map(len, reduced)) > most_terms:
+            raise TooLongError
+        return reduced
+
+    arithmetic = symbolic_arithmetic(robot, keep)
+    result = _run(robot, arithmetic, robot.bodies())
+    moved = _run(robot, arithmetic, unit_masses(robot.bodies()))
     vectors: Callable[[list[Vector]], list[Vector]] = lambda xs: [ring.reduced_vector(x) for x in xs]  # noqa: E731
     return ClosedForms(
         robot,
@@ -56,19 +73,23 @@ def closed_forms(robot: SymbolicRobot) -> ClosedForms:
     )
 
 
-def symbolic_arithmetic(robot: SymbolicRobot) -> Arithmetic:
+def unit_masses(bodies: Sequence[Body]) -> list[Body]:
+    """Links of mass 1 without a tensor: the net force on such a link is the acceleration of its centre of mass."""
+    return [replace(body, M=1, I=Matrix((ZERO, ZERO, ZERO))) for body in bodies]
+
+
+def symbolic_arithmetic(robot: SymbolicRobot, keep: Keep | None = None) -> Arithmetic:
     """Polynomials as a kind of scalar: every finished vector is reduced at once, so none ever grows needlessly."""
     return Arithmetic(
         number=lambda value, error: exact(value),
         column=lambda values: exact(float(values)),
         sincos=robot.sincos,
         sign=robot.sign,
-        keep=robot.ring.reduced_vector,
+        keep=keep or robot.ring.reduced_vector,
     )
 
 
-def _run(robot: SymbolicRobot, bodies: list[Body]) -> Result:
-    arithmetic = symbolic_arithmetic(robot)
+def _run(robot: SymbolicRobot, arithmetic: Arithmetic, bodies: Sequence[Body]) -> Result:
     return dynamics(
         robot.model, arithmetic, robot.q, robot.v, robot.a, robot.payloads, links=bodies, gravity=robot.gravity
     )

@@ -53,6 +53,10 @@ class Ring:
     def lift(self, x: Scalar) -> Polynomial:
         """Any scalar (an integer, a fraction, a polynomial) as a polynomial."""
         if isinstance(x, fmpq_mpoly):
+            if x.context() is not self._context:
+                raise ValueError(
+                    "a polynomial of another ring: take its terms there, and make a polynomial of them here"
+                )
             return x
         if isinstance(x, Fraction):
             x = fmpq(x.numerator, x.denominator)
@@ -61,8 +65,9 @@ class Ring:
     def reduced(self, x: Scalar) -> Polynomial:
         """The same modulo c^2 + s^2 = 1: no sine is squared."""
         polynomial = self.lift(x)
+        degrees = polynomial.degrees()  # of other sines a division leaves them as they are
         for i, circle in self._circles:
-            if polynomial.degrees()[i] > 1:
+            if degrees[i] > 1:
                 polynomial = divmod(polynomial, circle)[1]
         return polynomial
 

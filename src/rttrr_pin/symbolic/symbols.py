@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import enum
+from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple
@@ -78,3 +79,22 @@ class Symbol:
 def factors_of(exponents: dict[str, int]) -> Factors:
     """Exponents by name as the key of a term."""
     return tuple(sorted((name, power) for name, power in exponents.items() if power))
+
+
+def renamed_factors(factors: Factors, names: Mapping[str, str]) -> Factors:
+    """A product with other letters in place of some."""
+    if not any(name in names for name, _ in factors):
+        return factors
+    powers: dict[str, int] = {}
+    for name, power in factors:
+        powers[names.get(name, name)] = powers.get(names.get(name, name), 0) + power
+    return factors_of(powers)
+
+
+def renamed(terms: Terms, names: Mapping[str, str]) -> Terms:
+    """A polynomial with other letters in place of some."""
+    total: Terms = {}
+    for factors, coefficient in terms.items():
+        key = renamed_factors(factors, names)
+        total[key] = total.get(key, Fraction(0)) + coefficient
+    return {factors: coefficient for factors, coefficient in total.items() if coefficient}
