@@ -34,18 +34,16 @@ def audit(
 
     Exit code: 0 all right, 1 findings, 2 unusable input.
     """
-    from rttrr_pin import report
-    from rttrr_pin.paper import audit as auditing
-    from rttrr_pin.paper.publication import RTTRR, read_publication
+    from rttrr_pin import paper, report
 
     sheets = {"latex": latex, "html": html, "markdown": markdown}
     targets = {f"--{form}": target for form, target in ({"json": json} | sheets).items() if target is not None}
     _refuse_shared(targets)
-    publication = read_publication(RTTRR if file is None else file)
+    publication = paper.read_publication() if file is None else paper.read_publication(file)
     if equation:
         publication = _only(publication, equation)
     with progress(len(publication.equations), quiet, "equations") as advance:
-        result = auditing.audit(publication, seed, advance)
+        result = paper.audit(publication, seed, advance)
     write_json(json, lambda: report.audit_data(result))
     for form, target in sheets.items():
         write_text(target, partial(report.errata, result, form))

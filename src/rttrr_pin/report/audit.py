@@ -13,8 +13,8 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from rttrr_pin.paper.audit import Audit, ComponentAudit, Verdict
 from rttrr_pin.paper.findings import Finding
+from rttrr_pin.paper.verdicts import Audit, ComponentAudit, Verdict
 from rttrr_pin.report.audit_words import (
     Totals,
     by_term,

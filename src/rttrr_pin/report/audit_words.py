@@ -6,11 +6,12 @@ from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
-from rttrr_pin.paper.audit import Audit, ComponentAudit, ConventionCheck, Verdict, dimension_of
+from rttrr_pin.paper.audit import dimension_of
 from rttrr_pin.paper.edits import Kind
 from rttrr_pin.paper.evidence import Evidence
 from rttrr_pin.paper.findings import Finding
 from rttrr_pin.paper.publication import DEFINITION, Equation, Publication
+from rttrr_pin.paper.verdicts import Audit, ComponentAudit, ConventionCheck, Verdict
 from rttrr_pin.symbolic.symbols import ACCELERATION, FORCE, MOMENT, Dimension
 
 MEANING: Mapping[Kind, str] = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from rttrr_pin.paper.audit import Audit
+from rttrr_pin.paper.verdicts import Audit
 from rttrr_pin.report.errata.content import sheet_of
 from rttrr_pin.report.errata.html import html
 from rttrr_pin.report.errata.latex import latex

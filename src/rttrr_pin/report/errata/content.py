@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator, Sequence
 
-from rttrr_pin.paper.audit import Audit, ComponentAudit, Verdict
 from rttrr_pin.paper.findings import Finding
+from rttrr_pin.paper.verdicts import Audit, ComponentAudit, Verdict
 from rttrr_pin.report.audit_words import (
     MEANING,
     Totals,
