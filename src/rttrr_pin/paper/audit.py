@@ -197,7 +197,9 @@ class Auditor:
             return head
         letters = spelled(ring.symbols, self.publication.spellings, self.publication.language)
         writing = partial(in_language, self.publication.language, symbols=letters)
-        findings = findings_of(name, paired.pairs, terms, ring.symbols, dimension_of(self.robot.model, equation), writing)
+        findings = findings_of(
+            name, paired.pairs, terms, ring.symbols, dimension_of(self.robot.model, equation), writing
+        )
         quiet = [pair.reading.note for pair in paired.pairs if pair.reading and pair.reading.note and not pair.kinds]
         right = corrected(paired.pairs) if findings else [(_numeral(pair), False) for pair in paired.pairs]
         texts = writing([numeral for numeral, _ in right])
