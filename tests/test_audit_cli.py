@@ -119,6 +119,7 @@ def test_what_cannot_be_read_is_unparsed_and_the_rest_is_judged(
     assert data["components"][1]["unparsed"] and data["components"][1]["evidence"] is None
     assert main(["audit", str(path)]) == 1
     out = capsys.readouterr().out
+    assert f"in full: rttrr-pin audit {path} --equation tau_2" in out
     assert "not read" in out and "FINDINGS 1 match, 1 not read; 0 findings" in out
     assert main(["audit", str(path), "--html", "-"]) == 1
     assert "What could not be read" in capsys.readouterr().out
@@ -193,3 +194,13 @@ def test_every_key_of_the_example_is_told_in_the_docs() -> None:
     text = (TWO_LINK.parents[1] / "docs/audit.md").read_text()
     for key in (*FILE_KEYS, *LINK_KEYS, *EQUATION_KEYS, *KEYS, *tomllib.loads(TWO_LINK.read_text())):
         assert any(shown in text for shown in (f"`{key}", f"[{key}]", f" {key} = [")), key
+
+
+@pytest.mark.parametrize(("latex", "spelling"), [(True, "m_{10}"), (False, "m_10")])
+def test_letters_of_a_tenth_link_are_spelled_in_their_language(latex: bool, spelling: str) -> None:
+    from rttrr_pin.paper.tables import Table
+    from rttrr_pin.paper.templates import letters_in
+
+    entry = Table("equations.toml", "[[symbol]] 1", {"name": "m_<i>", "dimension": "mass", "i": [10]})
+    (letter,) = letters_in(entry, 10, latex)
+    assert (letter.symbol.name, letter.spellings) == ("m_10", (spelling,))

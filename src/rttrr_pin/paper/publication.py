@@ -169,7 +169,7 @@ def read_publication(path: Path = RTTRR) -> Publication:
     spellings: dict[str, str] = {}
     twins: dict[str, str] = {}
     for table in file.tables("symbol", "[[symbol]]"):
-        for letter in letters_in(table, links):
+        for letter in letters_in(table, links, language == "latex"):
             name = letter.symbol.name
             if name in symbols:
                 raise table.error(f"symbol {name!r} is declared twice: leave one")

@@ -56,12 +56,13 @@ class Letter:
     equal: str = ""
 
 
-def letters_in(table: Table, links: int) -> Iterator[Letter]:
+def letters_in(table: Table, links: int, latex: bool = True) -> Iterator[Letter]:
     """The symbols that an entry of [[symbol]] stands for.
 
     Args:
         table: the entry.
         links: how many links `<i>` runs over.
+        latex: whether spellings are LaTeX.
 
     Raises:
         EquationError: the entry lacks a name or has a dimension that does not exist.
@@ -81,7 +82,7 @@ def letters_in(table: Table, links: int) -> Iterator[Letter]:
                 f"name is {identifier!r}, which stands for a coordinate, a rate, an acceleration, a sine or a cosine: "
                 "choose another name; how it is printed is for `latex` to say"
             )
-        printed = tuple(dict.fromkeys(filled(spelling, values, latex=True) for spelling in spellings))
+        printed = tuple(dict.fromkeys(filled(spelling, values, latex) for spelling in spellings))
         symbol = Symbol(identifier, printed[0], Role.PARAMETER, DIMENSIONS[dimension])
         yield Letter(symbol, printed, filled(table.get("equal", str, ""), values))
 
