@@ -207,3 +207,14 @@ QUANTITIES: dict[str, Quantity] = {
     "dtau_da": _derivatives("a"),
 }
 """By name; `robot.compile(outputs=...)` takes any of them."""
+
+BOUND = "_bound"
+"""What the name of a bound ends with, behind that of what it bounds."""
+
+
+def _bound_of(quantity: Quantity) -> Quantity:
+    """A bound on the rounding of a quantity: `bounds.with_bounds` makes it from the quantity's own operations."""
+    return replace(quantity, of_links=True, by_steps=False)
+
+
+QUANTITIES |= {name + BOUND: _bound_of(quantity) for name, quantity in QUANTITIES.items()}
