@@ -46,7 +46,7 @@ class UnreadableError(RttrrError):
         before = text[: self.start]
         line, column = before.count("\n") + 1, self.start - (before.rfind("\n") + 1) + 1
         got = " ".join(text[self.start : self.start + SHOWN].split())
-        here = f"at {got!r}" if got else "at the end"
+        here = f"at `{got}`" if got else "at the end"
         return f"character {self.start + 1} (line {line}, column {column}), {here}: {self.message}"
 
 
@@ -100,6 +100,6 @@ def _explained(token: Token, accepted: Iterable[str], end: int) -> UnreadableErr
     if token.type == "$END":
         return UnreadableError(f"the text ends here, wanted {wanted}; complete it", end)
     if token.type == "OTHER":
-        message = f"{str(token)!r} has no place in a sum of products, wanted {wanted}; write it out or take it out"
+        message = f"`{token}` has no place in a sum of products, wanted {wanted}; write it out or take it out"
         return UnreadableError(message, start_of(token))
-    return UnreadableError(f"got {str(token)!r}, wanted {wanted}; correct the text", start_of(token))
+    return UnreadableError(f"got `{token}`, wanted {wanted}; correct the text", start_of(token))

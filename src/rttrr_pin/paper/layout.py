@@ -101,7 +101,7 @@ def _guessed(text: str, rows: Sequence[Row], certain: Sequence[int], wanted: int
             raise UnreadableError(f"the display can be divided in more than {MOST} ways", start_of(rows[0].tokens[0]))
         starts = tuple(sorted((*certain, *added)))
         places = " and ".join(
-            f"{starts.index(i) + 2} begins with row {i + 1}, {_beginning(text, rows[i])!r}" for i in added
+            f"{starts.index(i) + 2} begins with row {i + 1}, `{_beginning(text, rows[i])}`" for i in added
         )
         note = f"the boundary is not printed: component {places}"
         if any(rows[i - 1].open_end for i in added):
@@ -123,14 +123,8 @@ def _layout(rows: Sequence[Row], starts: Sequence[int], note: str) -> Layout:
         start, end = start_of(lines[0][0]), end_of(lines[-1][-1])
         if stop < len(rows) and rows[stop - 1].open_end:
             lines[-1] = lines[-1][:-1]
-        notes += (
-            []
-            if not starts
-            else [
-                f"the bracket {str(token)!r} of component {len(parts) + 1} has no partner, left out"
-                for token in _unpaired(lines)
-            ]
-        )
+        alone = _unpaired(lines) if starts else []  # around components that are divided, brackets are the vector's
+        notes += [f"the bracket `{token}` of component {len(parts) + 1} has no partner, left out" for token in alone]
         parts.append(_part(lines, start, end))
     return Layout(tuple(parts), "; ".join(notes))
 

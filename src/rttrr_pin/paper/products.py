@@ -34,6 +34,8 @@ def terms_of(products: Sequence[Product], vocabulary: Vocabulary, text: str) -> 
 
 
 def _terms(product: Product, vocabulary: Vocabulary, text: str) -> Terms:
+    if product.enclosed:
+        return terms_of(product.enclosed, vocabulary, text)
     found = [_Literal(vocabulary, text).read(factors, note) for factors, note in ways(product.factors, vocabulary)]
     sign = [Reading(Fraction(value), (), note) for value, note in signs(product.signs)]
     readings = [reading for reading, _ in found]

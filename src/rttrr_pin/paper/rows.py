@@ -83,7 +83,7 @@ def _without_lines(tokens: Sequence[Token]) -> list[Token]:
         name = token.split("{")[1].split("}")[0].strip() if token.type in ("BEGIN", "END") else None
         if name is not None and name not in MATRICES | LINES:
             known = ", ".join(sorted(MATRICES | LINES))
-            raise UnreadableError(f"the environment {name!r} cannot be read; wanted one of {known}", start_of(token))
+            raise UnreadableError(f"the environment `{name}` cannot be read; wanted one of {known}", start_of(token))
         if name not in LINES:
             kept.append(token)
     return kept

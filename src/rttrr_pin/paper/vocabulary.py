@@ -59,7 +59,7 @@ class Vocabulary:
             atom = _atom(spelling)
             if self._names.setdefault(atom, name) != name:
                 raise InputError(
-                    f"{spelling!r} is to be {name!r}, but the same symbol is {self._names[atom]!r} already: "
+                    f"`{spelling}` is to be {name}, but the same symbol is {self._names[atom]} already: "
                     "a symbol has one name; take one of the two out"
                 )
         self.names = frozenset(self._names.values())
@@ -120,6 +120,6 @@ def _atom(spelling: str) -> Atom:
         return atom_of(spelling)
     except UnreadableError as error:
         raise InputError(
-            f"{spelling!r} is no spelling of a symbol: {error.placed(spelling)}; "
-            r"wanted one letter with its scripts and accents, such as '\dot{q}_1'"
+            f"`{spelling}` is no spelling of a symbol: {error.placed(spelling)}; "
+            r"wanted one letter with its scripts and accents, such as `\dot{q}_1`"
         ) from error
