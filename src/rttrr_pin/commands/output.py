@@ -60,11 +60,18 @@ def write_json(target: str | None, data: Callable[[], dict[str, Any]]) -> None:
     """JSON to stdout or, whole or not at all, to a file."""
     from rttrr_pin import report
 
+    write_text(target, lambda: report.as_json(data()))
+
+
+def write_text(target: str | None, text: Callable[[], str]) -> None:
+    """Text to stdout or, whole or not at all, to a file."""
+    from rttrr_pin import report
+
     if target == "-":
         try:
-            sys.stdout.write(report.as_json(data()))
+            sys.stdout.write(text())
             sys.stdout.flush()
         except BrokenPipeError:
             discard_stdout()
     elif target is not None:
-        report.write_whole(Path(target), report.as_json(data()))
+        report.write_whole(Path(target), text())

@@ -11,9 +11,9 @@ from xml.sax.saxutils import quoteattr
 from rttrr_pin.loading import load
 from rttrr_pin.model import Joint, Model
 from rttrr_pin.paper.tables import Table
-from rttrr_pin.symbolic.chain import AXES, Letters, Slot, SymbolicRobot, value_of_slot
+from rttrr_pin.symbolic.chain import AXES, SLOT_DIMENSION, Letters, Slot, SymbolicRobot, value_of_slot
 from rttrr_pin.symbolic.ring import evaluate
-from rttrr_pin.symbolic.symbols import INERTIA, LENGTH, MASS, Dimension, Role, Symbol, Terms
+from rttrr_pin.symbolic.symbols import INERTIA, LENGTH, MASS, NUMBER, Dimension, Role, Symbol, Terms
 
 Expression = Callable[[Table, str], Terms]
 """Reads an expression in letters; the table is for messages."""
@@ -51,6 +51,9 @@ def read_robot(
     links = file.tables("link", "[[link]]")
     slots = dict(_slots(links, about, expression))
     given = {name: file.table("values").get(name, float) for name in file.table("values").entries}
+    for name, value in given.items():
+        if not math.isfinite(value):
+            raise file.table("values").error(f"{name} is {value}: expected a finite number")
     unknown = set(given) - {symbol.name for symbol in symbols}
     if unknown:
         raise file.table("values").error(f"{sorted(unknown)[0]!r} is no symbol: declare it in [[symbol]]")
@@ -67,8 +70,12 @@ def read_robot(
     force = file.table("payload").only(("link", "force", "moment"))
     payload_link = None
     if force.entries:
-        payload_link = model.link_index(force.get("link", str, model.links[-1].name))
+        name = force.get("link", str, model.links[-1].name)
+        if name not in model.link_names:
+            raise force.error(f"link is {name!r}: expected one of {', '.join(model.link_names)}")
+        payload_link = model.link_index(name)
         slots |= dict(_payload(force, expression))
+    _check_dimensions(slots, symbols, file)
     used = {name for terms in slots.values() for factors in terms for name, _ in factors}
     roles = _roles(slots)
     chosen = tuple(replace(symbol, role=roles.get(symbol.name, symbol.role)) for symbol in symbols)
@@ -76,6 +83,20 @@ def read_robot(
     if idle:
         raise file.error(f"symbol {idle[0]!r} stands for no number: use it in [robot], [[link]] or [payload]")
     return SymbolicRobot(model, Letters(chosen, slots, {s.name: values.get(s.name, 0.0) for s in chosen}), payload_link)
+
+
+def _check_dimensions(slots: Mapping[Slot, Terms], symbols: Sequence[Symbol], file: Table) -> None:
+    """Each letter may stand only for what it measures; a bare number has the unit of its place."""
+    dimensions = {symbol.name: symbol.dimension for symbol in symbols}
+    for slot, terms in slots.items():
+        wanted = SLOT_DIMENSION[str(slot[0])]
+        for factors in terms:
+            got = NUMBER
+            for name, power in factors:
+                got = got.times(dimensions[name], power)
+            if factors and got != wanted:
+                shown = " ".join(f"{name}^{power}" if power > 1 else name for name, power in factors)
+                raise file.error(f"{slot[0]} has {shown}, which measures {got}: expected {wanted}")
 
 
 def _roles(slots: Mapping[Slot, Terms]) -> dict[str, Role]:
@@ -225,6 +246,11 @@ def _from_table(
         return float(evaluate(slots[slot], values)) if slot in slots else 0.0
 
     names = _names(links)
+    for i, link in enumerate(links):
+        if names[i] in ("base", *names[:i]):
+            raise link.error(f"name is {names[i]!r}, which another link has: give each its own")
+        if number(("mass", i)) < 0:
+            raise link.error(f"mass is {number(('mass', i))} with the numbers of the letters: expected 0 or more")
     parts = ['<link name="base"/>']
     for i, link in enumerate(links):
         parent = link.get("parent", str, names[i - 1] if i else "base")
@@ -233,6 +259,13 @@ def _from_table(
         parts += [_link_xml(i, names[i], number), _joint_xml(link, i, (parent, names[i]), number)]
     gravity = tuple(number(("gravity", x)) for x in range(3)) if ("gravity", 0) in slots else (0.0, 0.0, -9.81)
     return load(f'<robot name="equations">{"".join(parts)}</robot>', gravity=gravity).model
+
+
+def _degrees(link: Table, text: str) -> float:
+    try:
+        return float(Fraction(text))
+    except (ValueError, ZeroDivisionError) as error:
+        raise link.error(f"rpy_degrees has {text!r}: expected a number of degrees") from error
 
 
 def _names(links: Sequence[Table]) -> list[str]:
@@ -255,7 +288,7 @@ def _link_xml(i: int, name: str, number: Callable[[Slot], float]) -> str:
 def _joint_xml(link: Table, i: int, ends: tuple[str, str], number: Callable[[Slot], float]) -> str:
     kind, axis = _motion(link)
     xyz = " ".join(repr(number(("origin", i, x))) for x in range(3))
-    degrees = [float(Fraction(text)) for text in link.texts("rpy_degrees", 3, ("0", "0", "0"))]
+    degrees = [_degrees(link, text) for text in link.texts("rpy_degrees", 3, ("0", "0", "0"))]
     rpy = " ".join(repr(math.radians(angle)) for angle in degrees)
     moves = "" if kind == "fixed" else f'<axis xyz="{axis[0]} {axis[1]} {axis[2]}"/>'
     limits = "" if kind == "fixed" else '<limit lower="-1" upper="1" effort="100" velocity="1"/>'

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property, partial
 
+from rttrr_pin.model import Model
 from rttrr_pin.paper.evidence import Evidence, Witness, weigh
 from rttrr_pin.paper.findings import findings_of
 from rttrr_pin.paper.form import expansions, folded, in_printed_form, sum_symbols, summed_angles, with_sums
@@ -196,7 +197,9 @@ class Auditor:
             return head
         letters = spelled(ring.symbols, self.publication.spellings, self.publication.language)
         writing = partial(in_language, self.publication.language, symbols=letters)
-        findings = findings_of(name, paired.pairs, terms, ring.symbols, dimension_of(self, equation), writing)
+        findings = findings_of(
+            name, paired.pairs, terms, ring.symbols, dimension_of(self.robot.model, equation), writing
+        )
         quiet = [pair.reading.note for pair in paired.pairs if pair.reading and pair.reading.note and not pair.kinds]
         right = corrected(paired.pairs) if findings else [(_numeral(pair), False) for pair in paired.pairs]
         texts = writing([numeral for numeral, _ in right])
@@ -264,9 +267,9 @@ def angles_of(ring: Ring) -> list[str]:
     return [name.removeprefix("c_") for name, symbol in ring.symbols.items() if symbol.role is Role.COSINE]
 
 
-def dimension_of(auditor: Auditor, equation: Equation) -> Dimension:
+def dimension_of(model: Model, equation: Equation) -> Dimension:
     """The dimension that every term of an equation should have."""
     if equation.quantity == "tau":
-        rotations = [rotation for joint in auditor.robot.model.moving for rotation in joint.type.rotations]
+        rotations = [rotation for joint in model.moving for rotation in joint.type.rotations]
         return MOMENT if rotations[equation.place] else FORCE
     return {"vC": ACCELERATION, "F": FORCE, "f": FORCE, "N": MOMENT, "n": MOMENT}[equation.quantity]

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
+from rttrr_pin.errors import InputError
 from rttrr_pin.paper.arm import read_robot
 from rttrr_pin.paper.latex import read_latex
 from rttrr_pin.paper.match import as_terms
@@ -173,7 +174,7 @@ def read_publication(path: Path = RTTRR) -> Publication:
             if name in symbols:
                 raise table.error(f"symbol {name!r} is declared twice: leave one")
             symbols[name] = letter.symbol
-            spellings |= dict.fromkeys(letter.spellings, name)
+            _spell(spellings, letter.spellings, name, table)
             if letter.equal:
                 twins[name] = letter.equal
     strangers = [name for name in twins.values() if name not in symbols or name in twins]
@@ -181,8 +182,8 @@ def read_publication(path: Path = RTTRR) -> Publication:
         raise file.error(f"a symbol is said to be equal to {strangers[0]!r}: expected the name of another symbol")
     letters = [symbol for name, symbol in symbols.items() if name not in twins]
     robot = read_robot(file, letters, _expression(symbols), _finder(path))
-    spellings |= _moving(file, robot, language)
-    return Publication(
+    _spell_motion(spellings, file, robot, language)
+    found = Publication(
         title=file.get("title", str, path.stem),
         source=file.get("source", str, path.name),
         language=language,
@@ -192,6 +193,20 @@ def read_publication(path: Path = RTTRR) -> Publication:
         equations=tuple(_equations(file, path, robot, language)),
         conventions=tuple(_conventions(file, symbols)),
     )
+    try:
+        if language == "latex":
+            found.vocabulary  # noqa: B018 - said now, with the file's name, and not in the middle of an audit
+    except InputError as error:
+        raise file.error(str(error)) from error
+    return found
+
+
+def _spell(spellings: dict[str, str], printed: Iterable[str], name: str, table: Table) -> None:
+    """Add spellings of a symbol; one that another symbol has would silently be read as either."""
+    for spelling in printed:
+        other = spellings.setdefault(spelling, name)
+        if other != name:
+            raise table.error(f"{spelling!r} is to be {name!r}, and is {other!r} already: spell them differently")
 
 
 def _expression(symbols: Mapping[str, Symbol]) -> Callable[[Table, str], Terms]:
@@ -221,11 +236,10 @@ def _finder(path: Path) -> Callable[[str], str]:
     return find
 
 
-def _moving(file: Table, robot: SymbolicRobot, language: str) -> dict[str, str]:
-    """The spellings of coordinates, rates and accelerations."""
+def _spell_motion(spellings: dict[str, str], file: Table, robot: SymbolicRobot, language: str) -> None:
+    """Add the spellings of coordinates, rates and accelerations."""
     table = file.table("coordinates").only(("position", "velocity", "acceleration"))
     usual = COORDINATES[language]
-    spellings = {}
     for key, letter, default, count in zip(
         ("position", "velocity", "acceleration"),
         "qva",
@@ -235,8 +249,8 @@ def _moving(file: Table, robot: SymbolicRobot, language: str) -> dict[str, str]:
     ):
         for template in table.texts(key, default=[default]):
             for k in range(1, count + 1):
-                spellings[filled(template, {"k": str(k)}, latex=language == "latex")] = f"{letter}_{k}"
-    return spellings
+                printed = filled(template, {"k": str(k)}, latex=language == "latex")
+                _spell(spellings, [printed], f"{letter}_{k}", table)
 
 
 def _equations(file: Table, path: Path, robot: SymbolicRobot, language: str) -> list[Equation]:
@@ -260,6 +274,8 @@ def _equations(file: Table, path: Path, robot: SymbolicRobot, language: str) -> 
 def _equation(table: Table, robot: SymbolicRobot, language: str) -> Equation:
     table.only(EQUATION_KEYS)
     number = table.entries.get("number", table.place.removeprefix("equation "))
+    if isinstance(number, bool) or not isinstance(number, int | str):
+        raise table.error(f'number is {number!r}: expected a whole number, or a text such as "6.10"')
     texts = tuple(table.texts(language))
     line = table.get("line", int, 0)
     quantity = table.get("quantity", str)
@@ -282,7 +298,7 @@ def _place(table: Table, key: str, names: Sequence[str]) -> int:
     value = table.entries.get(key)
     if isinstance(value, str) and value in names:
         return names.index(value)
-    if isinstance(value, int) and 1 <= value <= len(names):
+    if isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= len(names):
         return value - 1
     raise table.error(f"{key} is {value!r}: expected 1 to {len(names)}, or one of {', '.join(names)}")
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
@@ -33,6 +34,9 @@ DIMENSIONS: Mapping[str, Dimension] = {
 """What a symbol may measure."""
 
 AXES, PAIRS = ("x", "y", "z"), ("xy", "xz", "yz")
+
+RESERVED = re.compile(r"(q|v|a|s|c|sign)_j?\d+(_\d+)*")
+"""Names that symbols of motion have."""
 
 KEYS = ("name", "latex", "dimension", "equal", "i", "k")
 
@@ -72,6 +76,11 @@ def letters_in(table: Table, links: int) -> Iterator[Letter]:
         identifier = filled(name, values)
         if not identifier.isidentifier():
             raise table.error(f"name is {identifier!r}: expected letters, digits and _, such as r_C1x")
+        if RESERVED.fullmatch(identifier):
+            raise table.error(
+                f"name is {identifier!r}, which stands for a coordinate, a rate, an acceleration, a sine or a cosine: "
+                "choose another name; how it is printed is for `latex` to say"
+            )
         printed = tuple(dict.fromkeys(filled(spelling, values, latex=True) for spelling in spellings))
         symbol = Symbol(identifier, printed[0], Role.PARAMETER, DIMENSIONS[dimension])
         yield Letter(symbol, printed, filled(table.get("equal", str, ""), values))
