@@ -12,6 +12,7 @@ from typing import Annotated, Any
 import typer
 from rich.console import Console
 
+from rttrr_pin.commands.derive import derive
 from rttrr_pin.commands.inspect import inspect
 from rttrr_pin.commands.new import new
 from rttrr_pin.commands.output import AGREE, DISAGREE, INTERRUPTED, UNUSABLE, discard_stdout
@@ -20,7 +21,7 @@ from rttrr_pin.commands.validate import validate
 UsageError: Any = typer.BadParameter.__base__
 """Typer brings its own copy of click and does not export this class."""
 
-COMMANDS: tuple[Callable[..., int], ...] = (validate, inspect, new)
+COMMANDS: tuple[Callable[..., int], ...] = (validate, inspect, derive, new)
 """A new command is a module in `commands` and an entry here."""
 
 app = typer.Typer(

@@ -1,4 +1,4 @@
-"""What the commands share: exit codes, a console whose reader may leave, a progress bar, JSON to a file or stdout."""
+"""What the commands share: exit codes, a console whose reader may leave, a progress bar, text to a file or stdout."""
 
 from __future__ import annotations
 
@@ -60,11 +60,19 @@ def write_json(target: str | None, data: Callable[[], dict[str, Any]]) -> None:
     """JSON to stdout or, whole or not at all, to a file."""
     from rttrr_pin import report
 
-    if target == "-":
-        try:
-            sys.stdout.write(report.as_json(data()))
-            sys.stdout.flush()
-        except BrokenPipeError:
-            discard_stdout()
-    elif target is not None:
-        report.write_whole(Path(target), report.as_json(data()))
+    if target is not None:
+        write_text(target, report.as_json(data()))
+
+
+def write_text(target: str, text: str) -> None:
+    """Text to stdout ('-') or, whole or not at all, to a file."""
+    from rttrr_pin import report
+
+    if target != "-":
+        report.write_whole(Path(target), text)
+        return
+    try:
+        sys.stdout.write(text)
+        sys.stdout.flush()
+    except BrokenPipeError:
+        discard_stdout()
