@@ -10,6 +10,7 @@ from typing import Annotated, Any, Literal
 
 import typer
 
+from rttrr_pin.commands.numbers import numbers_of
 from rttrr_pin.commands.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json
 
 
@@ -76,7 +77,7 @@ def validate(
         return _validate_several(several, validation.Task(states, seed, family, oracle), json, quiet)
     loading: dict[str, Any] = {"base": base, "friction": friction}
     if gravity is not None:
-        loading["gravity"] = _numbers("--gravity", gravity, 3)
+        loading["gravity"] = numbers_of("--gravity", gravity, 3)
     loaded = rttrr_pin.load(robot, **loading)
     chosen: dict[str, Any] = {
         "seed": seed,
@@ -152,22 +153,9 @@ def _payload(text: str | None, link: str | None, axes: str) -> Any:
         return text
     if axes not in ("link", "base"):
         raise InputError(f"--payload-axes is {axes!r}: expected link or base")
-    numbers = _numbers("--payload", text, 6)
+    numbers = numbers_of("--payload", text, 6)
     named: Literal["link", "base"] = "base" if axes == "base" else "link"
     return Wrench(force=numbers[:3], moment=numbers[3:], link=link, expressed_in=named)
-
-
-def _numbers(option: str, text: str, count: int) -> list[float]:
-    """Numbers separated by commas or blanks."""
-    from rttrr_pin.errors import InputError
-    from rttrr_pin.model.strict import NUMBER
-
-    words = text.replace(",", " ").split()
-    numbers = [float(word) for word in words] if all(NUMBER.fullmatch(word) for word in words) else []
-    if len(numbers) != count:
-        example = ",".join("0" for _ in range(count))
-        raise InputError(f"{option} is {text!r}: expected {count} numbers separated by commas, such as {example}")
-    return numbers
 
 
 def _rerun(robot: str, options: Mapping[str, object], friction: bool) -> str:

@@ -39,7 +39,6 @@ class Presenter:
 
     def __init__(self, symbols: Mapping[str, Symbol]) -> None:
         self.symbols = symbols
-        self._ring = Ring(symbols.values())
         self._rank = {
             name: ((*GROUPS, *WITHIN).index(symbol.role), place) for place, (name, symbol) in enumerate(symbols.items())
         }
@@ -93,12 +92,14 @@ class Presenter:
         """A number, and sums whose product with it these terms are; the order does not depend on who factors them."""
         if not LEAST <= len(terms) <= MOST or any(x.denominator > SIMPLE for x in terms.values()):
             return Fraction(1), [terms]
-        number, factors = self._ring.polynomial(terms).factor()
+        used = {name for key in terms for name, _ in key}
+        ring = Ring(symbol for name, symbol in self.symbols.items() if name in used)  # a small one: FLINT's time grows
+        number, factors = ring.polynomial(terms).factor()
         if sum(power for _, power in factors) == 1:
             return Fraction(1), [terms]
         total, found = Fraction(int(number.p), int(number.q)), []
         for factor, power in factors:
-            share, _, rest = self._content(self._ring.terms(factor))
+            share, _, rest = self._content(ring.terms(factor))
             share, rest = self._upright(share, rest)
             total *= share**power
             found += [rest] * power
