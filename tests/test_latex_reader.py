@@ -364,6 +364,21 @@ def test_brackets_in_brackets_and_powers_of_brackets() -> None:
     assert values(spread) == [(1, factors_of({"M_5": 1, "g": 1, x: 1})) for x in ("l_2", "l_3")]
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        r"M_3 \cdot \\ & \cdot g",
+        r"M_3 \cdot \\ g",
+        r"M_3 \\ & \times g",
+        r"M_3 g = F_3",
+        r"{}^5\bar{f}_5 \\ & = M_3 g",
+        r"F = \\ M_3 g",
+    ],
+)
+def test_a_product_over_lines_and_names_on_either_side(text: str) -> None:
+    assert one(text) == (1, {"M_3": 1, "g": 1})
+
+
 def test_a_plain_term_is_shown_as_printed() -> None:
     terms = read("M_5   g -  \\\\ & - 2 M_4\n g + l_2")
     assert [term.text for term in terms] == ["M_5 g", "- 2 M_4 g", "+ l_2"]
@@ -542,6 +557,8 @@ def test_displays_that_are_not_what_was_stated(text: str, components: int, messa
             ("g + ", "{M_5 + g}", " q_1"),
             ("", "(1 + g)^{300}", " + g"),
             ("g + g", "^2^3", ""),
+            (r"\cos", "(q_1^2)", " g"),
+            ("g ", "/ M_5", " q_1"),
             (r"\cos", "(q_1 + q_1)", ""),
             ("g /", "0", ""),
         ),
@@ -554,6 +571,13 @@ def test_what_cannot_be_read_is_told_with_its_place(before: str, bad: str, after
     assert len(before) <= int(place[1]) - 1 <= len(before + bad)
 
 
+def test_what_was_wanted_is_told() -> None:
+    assert "got `]`, wanted a symbol, a number, + or -, an operator, an opening bracket" in fault("g + (M_5 ] + g")
+    assert "wanted a symbol, a number, an opening bracket, {" in fault("g + M_5 /") and "ends here" in fault(
+        "g + M_5 /"
+    )
+
+
 def test_the_place_counts_lines() -> None:
     assert fault("g +\n M_5 + \\sqrt{2}").startswith(r"character 12 (line 2, column 8), at `\sqrt{2}`")
 
@@ -562,6 +586,12 @@ def test_one_component_that_cannot_be_read_leaves_the_others() -> None:
     (split,) = read_latex(r"\begin{bmatrix} g \\ \sqrt{g} \\ q_1 \end{bmatrix}", PAPER, 3)
     assert [len(component.terms) for component in split.components] == [1, 0, 1]
     assert split.components[1].text == r"\sqrt{g}" and "sqrt" in split.components[1].unparsed
+
+
+def test_a_bracket_without_a_partner_is_told_unless_it_may_be_the_vectors() -> None:
+    (split,) = read_latex(r"[g + q_1 \\ M_5 ] - g \\ (M_4 + g)]", PAPER, 3)
+    assert [len(component.terms) for component in split.components] == [2, 0, 2]
+    assert split.components[1].unparsed.startswith("character 17 ") and split.note.count("no partner") == 2
 
 
 def test_brackets_nested_without_end_are_told() -> None:
@@ -634,6 +664,7 @@ def test_python_over_lines_and_assignments() -> None:
         == [(1, {"g": 1}), (1, {"l_1": 1})]
     )
     assert [term.text for term in read_python("(g + l1) - l2*(g)", NAMES).terms] == ["g", "+ l1", "- l2*(g)"]
+    assert [term.text for term in read_python("(g) - ((l1)*l2) + q1", NAMES).terms] == ["g", "- ((l1)*l2)", "+ q1"]
     assert python("(g + l1)*(g - l1)") == [
         (1, {"g": 2}),
         (-1, {"g": 1, "l_1": 1}),

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import cache
 from importlib.resources import files
-from typing import cast
+from typing import Any, cast
 
 from lark import Lark, Token, Tree, UnexpectedToken
 
@@ -18,6 +18,7 @@ WORDS = {
     "a symbol": {"LETTER", "GREEK", "ACCENT", "STYLE", "EMPTY", "FUNCTION"},
     "a number": {"NUMBER"},
     "+ or -": {"SIGN"},
+    "an operator": {"TIMES"},
     "an opening bracket": {"LPAR", "LSQB", "LCURLY"},
     ")": {"RPAR"},
     "]": {"RSQB"},
@@ -86,17 +87,24 @@ def parse(tokens: Sequence[Token], end: int) -> Tree[Token]:
     if not tokens:
         raise UnreadableError("there is nothing to read here, wanted a sum", end)
     state = parser().parse_interactive("", start="sum")
-    try:
-        for token in tokens:
-            state.feed_token(token)
-        return cast("Tree[Token]", state.feed_token(Token.new_borrow_pos("$END", "", tokens[-1])))
-    except UnexpectedToken as error:
-        raise _explained(error.token, error.accepts or error.expected, end) from error
+    for i, token in enumerate([*tokens, Token.new_borrow_pos("$END", "", tokens[-1])]):
+        try:
+            tree = state.feed_token(token)
+        except UnexpectedToken as error:
+            raise _explained(token, _accepted(tokens[:i]), end) from error
+    return cast("Tree[Token]", tree)
 
 
-def _explained(token: Token, accepted: Iterable[str], end: int) -> UnreadableError:
-    types = set(accepted)
-    wanted = ", ".join(word for word, members in WORDS.items() if members & types) or "something else"
+def _accepted(tokens: Sequence[Token]) -> set[str]:
+    """The types of token that may follow the beginning of a sum."""
+    state: Any = parser().parse_interactive("", start="sum")
+    for token in tokens:
+        state.feed_token(token)
+    return set(state.accepts())
+
+
+def _explained(token: Token, types: set[str], end: int) -> UnreadableError:
+    wanted = ", ".join(word for word, members in WORDS.items() if members & types) or "a script"
     if token.type == "$END":
         return UnreadableError(f"the text ends here, wanted {wanted}; complete it", end)
     if token.type == "OTHER":

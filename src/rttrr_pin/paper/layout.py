@@ -61,9 +61,7 @@ def layouts(text: str, components: int) -> list[Layout]:
     rows, matrix = rows_of(tokens_of(text))
     if not rows:
         raise UnreadableError("there is no equation here", 0)
-    found = [_layout(rows, starts, note) for starts, note in _divisions(text, rows, matrix, components)]
-    sound = [layout for layout in found if not any(part.fault for part in layout.parts)]
-    return sound or found
+    return [_layout(rows, starts, note) for starts, note in _divisions(text, rows, matrix, components)]
 
 
 def _divisions(text: str, rows: Sequence[Row], matrix: bool, components: int) -> list[tuple[tuple[int, ...], str]]:
