@@ -15,10 +15,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rttrr_pin.errors import InputError
-from rttrr_pin.paper.latex import read_latex
 from rttrr_pin.paper.printed import PrintedComponent, PrintedTerm, Reading, Split
-from rttrr_pin.paper.python import read_python
-from rttrr_pin.paper.vocabulary import Vocabulary
+from rttrr_pin.paper.reading.latex import read_latex
+from rttrr_pin.paper.reading.python import read_python
+from rttrr_pin.paper.reading.vocabulary import Vocabulary
 from rttrr_pin.symbolic.symbols import Factors, factors_of
 
 AXES = "xyz"

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 
 from rttrr_pin.errors import InputError
-from rttrr_pin.paper.grammar import UnreadableError
-from rttrr_pin.paper.nodes import Atom
-from rttrr_pin.paper.trees import atom_of
+from rttrr_pin.paper.reading.grammar import UnreadableError
+from rttrr_pin.paper.reading.nodes import Atom
+from rttrr_pin.paper.reading.trees import atom_of
 
 COORDINATE = "q_"
 """How the names of coordinates begin; an index from 1 follows."""

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from lark import Token
 
-from rttrr_pin.paper.grammar import UnreadableError, parse, start_of
-from rttrr_pin.paper.nodes import Factor
-from rttrr_pin.paper.trees import products_of
+from rttrr_pin.paper.reading.grammar import UnreadableError, parse, start_of
+from rttrr_pin.paper.reading.nodes import Factor
+from rttrr_pin.paper.reading.trees import products_of
 
 MATRICES = {"matrix", "bmatrix", "pmatrix", "Bmatrix", "smallmatrix", "array"}
 """Environments of which each row is a component, or each cell of the only row."""

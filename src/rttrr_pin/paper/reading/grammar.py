@@ -54,7 +54,7 @@ class UnreadableError(RttrrError):
 @cache
 def parser() -> Lark:
     """The parser, made once."""
-    grammar = files("rttrr_pin.paper").joinpath("latex.lark").read_text(encoding="utf-8")
+    grammar = files("rttrr_pin.paper.reading").joinpath("latex.lark").read_text(encoding="utf-8")
     starts = ["sum", "layout"]
     return Lark(grammar, parser="lalr", lexer="basic", start=starts, propagate_positions=True, maybe_placeholders=False)
 

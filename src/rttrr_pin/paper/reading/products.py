@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
-from rttrr_pin.paper.ambiguity import Factors, joined, signs, sums_coordinates, takes_argument, ways
-from rttrr_pin.paper.expansion import Bracket, Terms, expanded
-from rttrr_pin.paper.grammar import UnreadableError
-from rttrr_pin.paper.nodes import Atom, Factor, Group, Product
 from rttrr_pin.paper.printed import Reading
-from rttrr_pin.paper.vocabulary import FUNCTIONS, Vocabulary, angle_name
+from rttrr_pin.paper.reading.ambiguity import Factors, joined, signs, sums_coordinates, takes_argument, ways
+from rttrr_pin.paper.reading.expansion import Bracket, Terms, expanded
+from rttrr_pin.paper.reading.grammar import UnreadableError
+from rttrr_pin.paper.reading.nodes import Atom, Factor, Group, Product
+from rttrr_pin.paper.reading.vocabulary import FUNCTIONS, Vocabulary, angle_name
 from rttrr_pin.symbolic.symbols import factors_of
 
 LARGEST_POWER = 400

@@ -12,8 +12,8 @@ from itertools import combinations, pairwise
 
 from lark import Token
 
-from rttrr_pin.paper.grammar import SHOWN, UnreadableError, end_of, start_of, tokens_of
-from rttrr_pin.paper.rows import Row, rows_of
+from rttrr_pin.paper.reading.grammar import SHOWN, UnreadableError, end_of, start_of, tokens_of
+from rttrr_pin.paper.reading.rows import Row, rows_of
 
 MOST = 200
 """Splits of one display."""
