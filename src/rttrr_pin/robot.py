@@ -155,8 +155,8 @@ class Robot:
         """
         from rttrr_pin.certify.umpire import certify
 
-        arrays = [coordinates(name, x, self.model.moving) for name, x in (("q", q), ("v", v), ("a", a))]
-        return certify(self.model, *arrays, self._loads(payload), numbers)
+        q, v, a = (coordinates(name, x, self.model.moving) for name, x in (("q", q), ("v", v), ("a", a)))
+        return certify(self.model, q, v, a, self._loads(payload), numbers)
 
     def compile(self, outputs: str | Sequence[str] = "tau", emitter: str | None = None) -> Kernel:
         """Compile the robot's dynamics for this processor.
