@@ -101,7 +101,7 @@ def bodies(model: Model, arithmetic: Arithmetic) -> list[Body]:
 @lru_cache(maxsize=32)
 def _bodies(model: Model, number: NumberOf) -> list[Body]:
     """Models and bodies are frozen, so the last few are kept."""
-    return [_body(*pair, number) for pair in zip(model.joints, model.links, strict=True)]
+    return [body_of(*pair, number) for pair in zip(model.joints, model.links, strict=True)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -233,8 +233,8 @@ def _generalised(model: Model, arithmetic: Arithmetic, forces: Sequence[Sequence
     return [force for i in model.independent for force in total[i]]
 
 
-def _body(joint: Joint, link: Link, number: NumberOf) -> Body:
-    """One link with its joint."""
+def body_of(joint: Joint, link: Link, number: NumberOf) -> Body:
+    """One link with its joint, in scalars made by `number`."""
 
     def within(error: float) -> Callable[[float], Scalar]:
         return lambda value: number(value, error)

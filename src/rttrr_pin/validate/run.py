@@ -12,13 +12,14 @@ import numpy as np
 
 from rttrr_pin.arithmetic import Load
 from rttrr_pin.batch import blocks
-from rttrr_pin.certify import bounded_dynamics
+from rttrr_pin.certify import Settlement, bounded_dynamics
 from rttrr_pin.errors import InputError
 from rttrr_pin.model import Drive, LinkWrenches, Wrench
 from rttrr_pin.model.inputs import whole_number
 from rttrr_pin.oracles import Evaluation, Oracle, make_oracle
 from rttrr_pin.robot import Robot
 from rttrr_pin.validate.compare import Comparison, Gap, Row, Worst
+from rttrr_pin.validate.settle import settle_state
 from rttrr_pin.validate.states import LAST_STATE, Sampler, States
 
 BLOCK = 1024
@@ -49,6 +50,8 @@ class Validation:
         whole: by quantity, the largest error in eps, in the norm over all links or joints.
         seconds: wall time.
         versions: of what took part.
+        failing: how many states lie outside the gate.
+        settled: who is right, by balls: in the worst failing states, worst first, then in the worst passing one.
     """
 
     robot: str
@@ -64,6 +67,8 @@ class Validation:
     whole: dict[str, Worst]
     seconds: float
     versions: dict[str, str] = field(default_factory=dict)
+    failing: int = 0
+    settled: tuple[Settlement, ...] = ()
 
     @property
     def agrees(self) -> bool:
@@ -92,6 +97,7 @@ class StateReport:
         bound: the bound on our rounding.
         rows: labels of the gaps.
         gaps: how far apart, one for each row.
+        settled: who is right, by balls.
     """
 
     robot: str
@@ -105,6 +111,7 @@ class StateReport:
     bound: LinkWrenches
     rows: tuple[Row, ...]
     gaps: tuple[Gap, ...]
+    settled: Settlement
 
     @property
     def agrees(self) -> bool:
@@ -147,6 +154,7 @@ def validate(
         comparison.add(drawn.first, *_both(robot, other, drawn))
         if progress is not None:
             progress(part.stop)
+    settled = tuple(_settled(robot, other, sampler, state) for state in comparison.ranking.chosen())
     return Validation(
         robot=robot.name,
         base="floating" if robot.model.floating else "fixed",
@@ -161,6 +169,8 @@ def validate(
         whole=comparison.whole,
         seconds=time.perf_counter() - start,
         versions=versions(other),
+        failing=comparison.ranking.failing,
+        settled=settled,
     )
 
 
@@ -197,6 +207,7 @@ def compare_state(
         bound,
         rows,
         gaps,
+        settle_state(robot.model, drawn, ours, theirs, bound, other.name),
     )
 
 
@@ -251,6 +262,12 @@ def _both(robot: Robot, oracle: Oracle, drawn: States) -> tuple[LinkWrenches, Ev
         _check_size(ours, drawn.first)
         theirs = oracle.evaluate(drawn.q, drawn.v, drawn.a, drawn.loads)
     return ours, theirs, bound
+
+
+def _settled(robot: Robot, oracle: Oracle, sampler: Sampler, state: int) -> Settlement:
+    """Who is right in one state."""
+    drawn = sampler.draw(state, 1)
+    return settle_state(robot.model, drawn, *_both(robot, oracle, drawn), oracle.name)
 
 
 def _check_size(ours: LinkWrenches, first: int) -> None:
