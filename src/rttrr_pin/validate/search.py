@@ -16,7 +16,7 @@ from scipy.optimize import differential_evolution
 from rttrr_pin.model import Wrench
 from rttrr_pin.model.inputs import whole_number
 from rttrr_pin.robot import Robot
-from rttrr_pin.validate.run import Gaps, gaps_of, prepare
+from rttrr_pin.validate.run import Contest
 from rttrr_pin.validate.states import States
 
 Array = NDArray[np.float64]
@@ -82,19 +82,17 @@ def search(
         OracleError: as in `validate`.
     """
     whole_number("evaluations", evaluations, FEWEST, MOST, "10^9")
-    sampler, other, comparison = prepare(robot, seed, "uniform", payload, oracle)
+    contest = Contest.of(robot, seed, "uniform", payload, oracle, evaluations)
+    sampler = contest.sampler
     generations = evaluations // POPULATION - 1
     rng = np.random.default_rng(seed)
     start = rng.random((POPULATION, sampler.numbers))
     done = 0
 
-    def shares(unit: Array) -> list[Gaps]:
-        return gaps_of(robot, other, comparison, sampler.made_of(unit))
-
     def closeness(columns: Array) -> Array:
         nonlocal done
         unit = np.atleast_2d(columns.T)
-        worst: Array = np.max([gap.share for gap in shares(unit)], axis=0)
+        worst: Array = np.max([gap.share for gap in contest.gaps(sampler.made_of(unit))], axis=0)
         done += len(unit)
         progress(min(done, evaluations))
         return -worst
@@ -113,7 +111,7 @@ def search(
         rng=rng,
     )
     state = sampler.made_of(np.atleast_2d(found.x))
-    gaps = gaps_of(robot, other, comparison, state)
+    gaps = contest.gaps(state)
     k = int(np.argmax([gap.share[0] for gap in gaps]))
-    row = comparison.rows[k]
+    row = contest.comparison.rows[k]
     return Found(row.quantity, row.at, float(gaps[k].share[0]), random, done, seed, state)
