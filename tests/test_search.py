@@ -47,12 +47,12 @@ def test_a_search_beyond_the_gate_says_so(monkeypatch, rttrr: Robot) -> None:
 
     def wrong(self, q, v, a, loads=()):
         result = right(self, q, v, a, loads)
-        result.wrenches.tau[:, 0] += 1e-13 * np.exp(-30 * (q[:, 0] - 1.0) ** 2)
+        result.wrenches.tau[:, 0] += 2.5e-13 * np.exp(-30 * (q[:, 0] - 1.0) ** 2)
         return result
 
     monkeypatch.setattr(PinocchioOracle, "evaluate", wrong)
     found = search(rttrr, 40 * POPULATION, 0)
-    assert not found.agrees and (found.quantity, found.at) == ("tau", "joint_1")
+    assert found.random < 1.0 < found.share and (found.quantity, found.at) == ("tau", "joint_1")
     assert abs(found.states.q[0, 0] - 1.0) < 0.5
 
 
