@@ -72,7 +72,7 @@ def error_of(x: float) -> float:
 
 def exactly(x: float, value: float) -> bool:
     """Whether a number is that value, without error."""
-    return float(x) == value and not error_of(x)
+    return x == value and not error_of(x)  # also of a fraction that rounds to it
 
 
 def is_power_of_two(x: float) -> bool:
