@@ -219,7 +219,8 @@ def _prepare(
     if not robot.model.links:
         raise InputError(f"robot {robot.name!r} has no joint, so that there is nothing to compare")
     sampler = Sampler(robot.model, family, seed, _payload(robot, payload))
-    return sampler, make_oracle(oracle, robot.model), Comparison(robot.model)
+    other = make_oracle(oracle, robot.model)
+    return sampler, other, Comparison(robot.model, other.quantities)
 
 
 def _payload(robot: Robot, payload: Wrench | str | None) -> Load | str | None:
