@@ -1,4 +1,4 @@
-"""How far a computed number can be from the true one, and what the true one is."""
+"""How far a computed number can be from the true one, what the true one is, and the laws that true ones keep."""
 
 from __future__ import annotations
 

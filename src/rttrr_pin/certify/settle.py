@@ -117,12 +117,12 @@ def eps_in_words(eps: float) -> str:
 
 
 def nearest(certificate: Certificate, computed: LinkWrenches) -> LinkWrenches:
-    """Of each enclosure the value that is nearest to a computed one; its middle where that is NaN."""
+    """Of each enclosure the value that is nearest to a computed one; its middle where that is NaN, or was not computed."""
     parts = {}
     for key, enclosure in certificate.items():
-        x = getattr(computed, key)
+        x = enclosure.mid if key in LINK_QUANTITIES and not computed.links else getattr(computed, key)
         parts[key] = np.where(np.isnan(x), enclosure.mid, np.clip(x, enclosure.lower, enclosure.upper))
-    return LinkWrenches.of(parts | {"tau_joint": computed.tau_joint}, computed.links, computed.joints)
+    return LinkWrenches.of(parts | {"tau_joint": computed.tau_joint}, certificate.links, computed.joints)
 
 
 def walk(model: Model) -> Iterator[tuple[str, int]]:
@@ -143,7 +143,7 @@ def walk(model: Model) -> Iterator[tuple[str, int]]:
 
 
 def in_order(model: Model, offs: Sequence[Off]) -> tuple[Off, ...]:
-    """From the order of reports (tau, then F, N, f, n, each link by link) to that of the walk."""
+    """From the order of reports (tau, then F, N, f, n, each link by link, or tau alone) to that of the walk."""
     links = len(model.links)
     first = {"tau": 0} | {key: model.nv + k * links for k, key in enumerate(LINK_QUANTITIES)}
-    return tuple(offs[first[quantity] + place] for quantity, place in walk(model))
+    return tuple(offs[at] for quantity, place in walk(model) if (at := first[quantity] + place) < len(offs))

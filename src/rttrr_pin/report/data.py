@@ -83,7 +83,9 @@ def state_data(report: StateReport) -> dict[str, Any]:
             for load in states.loads
         ],
         "ours": {key: x[0].tolist() for key, x in report.ours.items()},
-        "theirs": {key: x[0].tolist() for key, x in report.theirs.items()},
+        "theirs": {
+            key: x[0].tolist() for key, x in report.theirs.items() if any(row.quantity == key for row in report.rows)
+        },
         "bound": {key: x[0].tolist() for key, x in report.bound.items()},
         "gaps": gaps,
         "gate": GATE,

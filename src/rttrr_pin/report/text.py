@@ -142,7 +142,7 @@ def _values(report: StateReport) -> Iterable[tuple[Array, Array]]:
     ours, theirs = report.ours, report.theirs
     for column in range(ours.tau.shape[1]):
         yield ours.tau[0, column, None], theirs.tau[0, column, None]
-    for key in LINK_QUANTITIES:
+    for key in (key for key in LINK_QUANTITIES if any(row.quantity == key for row in report.rows)):
         yield from zip(getattr(ours, key)[0], getattr(theirs, key)[0], strict=True)
 
 

@@ -9,12 +9,13 @@ oracle's allowance. It adds up the same terms in another order and in other axes
 but for the whole vector x that the quantity belongs to: F, N, f or n of the link itself, and for tau the n of the
 joint (its f, where it slides), of which tau is one component. In other axes an error of one component is an error of
 all. The 4 eps are for the rounding of what is handed to the oracle; `cancelled` is the rounding of terms that only the
-oracle's formulas have and that cancel in its result (`oracles.Evaluation.rounding`).
+oracle's formulas have and that cancel in its result (`oracles.Evaluation.rounding`). Where the oracle bounds the
+rounding of its own driving forces, that bound is the bracket.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -149,9 +150,10 @@ class Comparison:
         ranking: the states to look at again.
     """
 
-    def __init__(self, model: Model) -> None:
-        self.rows = [Row(*labels) for labels in _labels(model)]
-        self.whole = {quantity: Worst() for quantity in QUANTITIES}
+    def __init__(self, model: Model, quantities: Sequence[str] = QUANTITIES) -> None:
+        """Prepare to compare the quantities that an oracle gives."""
+        self.rows = [Row(*labels) for labels in _labels(model) if labels[0] in quantities]
+        self.whole = {quantity: Worst() for quantity in quantities}
         self.ranking = Ranking()
         self._shares = _shares(model)
 
@@ -173,26 +175,31 @@ class Comparison:
     def gaps(self, ours: LinkWrenches, oracle: Evaluation, bound: LinkWrenches) -> Iterator[Gap]:
         """The gap of each row, in the order of `rows`."""
         theirs, cancelled = oracle.wrenches, oracle.rounding
+        carrier = theirs if theirs.links else ours  # whose f and n say how large a driving force is
         for column, shares in enumerate(self._shares):
             difference = np.abs(ours.tau[:, column] - theirs.tau[:, column])
             own = np.abs(theirs.tau_joint[:, column])
-            size, allowance = own, HANDOVER * own
+            size = own + sum(weight * _norm(getattr(carrier, whole)[:, link]) for weight, whole, link in shares)
+            mine_bound = np.abs(bound.tau[:, column])
+            if "tau" in cancelled:
+                yield _gap(difference, mine_bound, size, cancelled["tau"][:, column], handed=0.0)
+                continue
+            allowance = HANDOVER * own
             for weight, whole, link in shares:
-                x, x_bound = (_norm(getattr(result, whole)[:, link]) for result in (theirs, bound))
-                size = size + weight * x
+                x_bound = _norm(getattr(bound, whole)[:, link])
                 allowance = allowance + weight * (x_bound + cancelled[whole][:, link])
-            yield _gap(difference, np.abs(bound.tau[:, column]), size, allowance)
-        for key in LINK_QUANTITIES:
+            yield _gap(difference, mine_bound, size, allowance)
+        for key in (key for key in LINK_QUANTITIES if key in self.whole):
             for link in range(len(ours.links)):
                 mine, their, mine_bound = (getattr(result, key)[:, link] for result in (ours, theirs, bound))
                 x_bound = _norm(mine_bound)
                 yield _gap(_norm(mine - their), x_bound, _norm(their), x_bound + cancelled[key][:, link])
 
 
-def _gap(difference: Array, bound: Array, x: Array, x_bound: Array) -> Gap:
+def _gap(difference: Array, bound: Array, x: Array, x_bound: Array, handed: float = HANDOVER) -> Gap:
     difference = np.where(np.isfinite(difference), difference, np.inf)  # as far off as can be
     x = np.where(np.isfinite(x), x, 0.0)  # and must not widen the gate of what else is measured against it
-    return Gap(difference, size=x, own=bound, allowance=x_bound + HANDOVER * x)
+    return Gap(difference, size=x, own=bound, allowance=x_bound + handed * x)
 
 
 def _finite_norm(vectors: Array) -> Array:

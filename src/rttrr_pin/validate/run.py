@@ -154,7 +154,7 @@ class Contest:
             raise InputError(f"robot {robot.name!r} has no joint, so that there is nothing to compare")
         sampler = Sampler(robot.model, family, seed, _payload(robot, payload))
         other = make_oracle(oracle, robot.model)
-        return cls(robot, sampler, Ours(robot, states), other, Comparison(robot.model))
+        return cls(robot, sampler, Ours(robot, states), other, Comparison(robot.model, other.quantities))
 
     def both(self, drawn: States) -> tuple[LinkWrenches, Evaluation, LinkWrenches]:
         """Ours, the oracle's, and the bound on ours."""

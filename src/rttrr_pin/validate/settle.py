@@ -13,6 +13,7 @@ from rttrr_pin.certify.umpire import Certificate, certify
 from rttrr_pin.certify.written import Numbers, written
 from rttrr_pin.errors import InputError
 from rttrr_pin.model import LinkWrenches, Model
+from rttrr_pin.model.wrench import LINK_QUANTITIES
 from rttrr_pin.oracles import Evaluation
 from rttrr_pin.validate.compare import Comparison, Gap, ratio
 from rttrr_pin.validate.states import States
@@ -55,9 +56,10 @@ def settle(
         oracle: its name.
         state: its index, for the report.
     """
-    comparison = Comparison(model)
+    given = LINK_QUANTITIES if theirs.wrenches.links else ()
     sides = []
-    for name, computed in (("ours", ours), (oracle, theirs.wrenches)):
+    for name, computed, known in (("ours", ours, LINK_QUANTITIES), (oracle, theirs.wrenches, given)):
+        comparison = Comparison(model, ("tau", *known))
         truth = Evaluation(nearest(certificate, computed), theirs.rounding)
         rows = zip(comparison.rows, comparison.gaps(computed, truth, bound), strict=True)
         offs = [Off(row.quantity, row.at, float(gap.relative[0]), _share(gap, name == "ours")) for row, gap in rows]
