@@ -117,7 +117,7 @@ def eps_in_words(eps: float) -> str:
 
 
 def nearest(certificate: Certificate, computed: LinkWrenches) -> LinkWrenches:
-    """Of each enclosure the value that is nearest to a computed one; its middle where that is NaN, or was not computed."""
+    """Of each enclosure the value that is nearest to a computed one; its middle where there is none."""
     parts = {}
     for key, enclosure in certificate.items():
         x = enclosure.mid if key in LINK_QUANTITIES and not computed.links else getattr(computed, key)

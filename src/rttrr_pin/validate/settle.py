@@ -57,10 +57,14 @@ def settle(
         state: its index, for the report.
     """
     given = LINK_QUANTITIES if theirs.wrenches.links else ()
+    nothing = {key: np.zeros((1, len(model.links))) for key in LINK_QUANTITIES}
     sides = []
-    for name, computed, known in (("ours", ours, LINK_QUANTITIES), (oracle, theirs.wrenches, given)):
+    for name, computed, known, rounding in (
+        ("ours", ours, LINK_QUANTITIES, nothing),
+        (oracle, theirs.wrenches, given, theirs.rounding),
+    ):
         comparison = Comparison(model, ("tau", *known))
-        truth = Evaluation(nearest(certificate, computed), theirs.rounding)
+        truth = Evaluation(nearest(certificate, computed), rounding)
         rows = zip(comparison.rows, comparison.gaps(computed, truth, bound), strict=True)
         offs = [Off(row.quantity, row.at, float(gap.relative[0]), _share(gap, name == "ours")) for row, gap in rows]
         sides.append(Side(name, in_order(model, offs)))
