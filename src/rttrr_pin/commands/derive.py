@@ -19,11 +19,13 @@ NEXT = "to write them, add --latex FILE, --markdown FILE, --python FILE or --c F
 
 ALMOST = "some rotations are almost right angles, which makes many small terms: add --right-angles to read them as such"
 
+PAPERS_ARM = "rttrr"
+
 PREFACES = {
-    "rttrr": "The arm of Detesan, The dynamic model of RTTRR serial robot - Iterations outwards and inwards the robot's "
-    "mechanical structure, Acta Technica Napocensis: the moments n_i, which the paper leaves to a link that no longer "
-    "answers, and what comes next. docs/rttrr_model.md of rttrr-pin is what `rttrr-pin derive --markdown FILE` writes; "
-    "the tests write it anew, and hold every formula in it against Pinocchio."
+    PAPERS_ARM: "The arm of Detesan, The dynamic model of RTTRR serial robot - Iterations outwards and inwards the "
+    "robot's mechanical structure, Acta Technica Napocensis: the moments n_i, which the paper leaves to a link that no "
+    "longer answers, and what comes next. docs/rttrr_model.md of rttrr-pin is what `rttrr-pin derive --markdown FILE` "
+    "writes; the tests write it anew, read its equations again, and hold every formula in it against Pinocchio."
 }
 """What stands before the model of a bundled robot."""
 
@@ -76,7 +78,8 @@ def derive(
     model = rttrr_pin.load(robot, base=base, friction=friction, **field).model  # type: ignore[arg-type]
     link = symbolic.only_leaf(model) if payload_link is None else model.link_index(payload_link)
     start = time.perf_counter()
-    letters = letters_for(model, link, numbers)
+    as_published = robot == PAPERS_ARM and gravity is None and base == "fixed" and payload_link is None
+    letters = _papers_letters() if as_published and not numbers else letters_for(model, link, numbers)
     derivation = symbolic.derive(model, quantity or symbolic.DEFAULT, form, letters, link, right_angles)
     seconds = time.perf_counter() - start
     texts = {name: WRITERS[name](derivation, PREFACES.get(robot, "")) for name in wanted}
@@ -89,6 +92,13 @@ def derive(
     if not wanted:
         console.print(NEXT, markup=False, soft_wrap=True)
     return AGREE
+
+
+def _papers_letters() -> Letters:
+    """The letters of the paper: l_2, l_3, l_4, and h_1 to h_6 for the heights that it prints in no equation."""
+    from rttrr_pin.paper import read_publication
+
+    return read_publication().robot.letters
 
 
 def letters_for(model: Model, payload_link: int | None, numbers: bool) -> Letters:
