@@ -11,6 +11,7 @@ from collections.abc import Callable
 from typing import Any
 
 import kernel_tables
+import proof_tables
 from saved import TOP, machine, result
 
 
@@ -86,6 +87,8 @@ TABLES: dict[str, dict[str, Callable[[], list[str]]]] = {
         "speed": kernel_tables.speed,
         "cost": cost_table,
         "robots": robots_table,
+        "audit": proof_tables.audit,
+        "bounds": proof_tables.bounds,
     },
     "docs/kernel.md": {
         "joints": kernel_tables.joints,

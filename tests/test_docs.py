@@ -34,6 +34,7 @@ def fenced(text: str, marker: str) -> str:
 def without_numbers(text: str) -> list[str]:
     """Lines with digits, and the spaces and rules that depend on their width, left out."""
     lines = [re.sub(r"[\s━─]+", " ", NUMBER.sub("#", line)).strip() for line in text.splitlines()]
+    lines = [re.sub(r"(# eps) \(.*?\)", r"\1 (...)", line) for line in lines]
     return [re.sub(r"^worst state # \(.*?\)", "worst state # (...)", line) for line in lines]
 
 

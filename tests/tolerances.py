@@ -36,6 +36,10 @@ DIFFERENCES = 1e-6
 """Central differences with steps of 6e-6, the cube root of eps: good to 6e-11 (measured), a wrong term is off by a
 percent or more. A check of sanity, apart from Pinocchio; the exact comparison is with that."""
 
+SIXTY_DIGITS = 1e-50
+"""Of the largest number of a quantity: what arithmetic in 60 digits itself may be off, after some 1e3 operations whose terms
+cancel by some 1e5; a double has 16 digits."""
+
 EXACT = 0.0
 """The same operations in the same order: the same bits."""
 

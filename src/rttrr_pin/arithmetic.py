@@ -101,7 +101,7 @@ def bodies(model: Model, arithmetic: Arithmetic) -> list[Body]:
 @lru_cache(maxsize=32)
 def _bodies(model: Model, number: NumberOf) -> list[Body]:
     """Models and bodies are frozen, so the last few are kept."""
-    return [_body(*pair, number) for pair in zip(model.joints, model.links, strict=True)]
+    return [body_of(*pair, number) for pair in zip(model.joints, model.links, strict=True)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,11 +136,15 @@ def evaluate(model: Model, arithmetic: Arithmetic, q: Array, v: Array, a: Array,
     Returns:
         The five quantities in scalars of that kind; what no state changes may be a plain number.
     """
-    payloads = [
+    q_, v_, a_ = ([arithmetic.column(column) for column in columns(x)] for x in (q, v, a))
+    return dynamics(model, arithmetic, q_, v_, a_, payloads_of(loads, arithmetic))
+
+
+def payloads_of(loads: Sequence[Load], arithmetic: Arithmetic) -> list[Payload]:
+    """The payloads of a batch in scalars."""
+    return [
         Payload(load.link, _vector(load.f, arithmetic), _vector(load.n, arithmetic), load.in_base) for load in loads
     ]
-    q_, v_, a_ = ([arithmetic.column(column) for column in _columns(x)] for x in (q, v, a))
-    return dynamics(model, arithmetic, q_, v_, a_, payloads)
 
 
 def dynamics(
@@ -168,7 +172,7 @@ def dynamics(
     Returns:
         The five quantities in scalars of that kind; what no state changes may be a plain number.
     """
-    states = _joint_states(model, arithmetic, q, v, a)
+    states = joint_states(model, arithmetic, q, v, a)
     if gravity is None:
         gravity = Vector.of(model.gravity, lambda value: arithmetic.number(value, 0.0))
     parents = [joint.parent for joint in model.joints]
@@ -180,7 +184,7 @@ def dynamics(
     return Result(tau, tau_joint, result.F, result.N, result.f, result.n)
 
 
-def _joint_states(
+def joint_states(
     model: Model, arithmetic: Arithmetic, q: Sequence[Scalar], v: Sequence[Scalar], a: Sequence[Scalar]
 ) -> list[JointState]:
     """The columns of q, v, a by joint; a joint that follows another has its columns made from that one's."""
@@ -233,8 +237,8 @@ def _generalised(model: Model, arithmetic: Arithmetic, forces: Sequence[Sequence
     return [force for i in model.independent for force in total[i]]
 
 
-def _body(joint: Joint, link: Link, number: NumberOf) -> Body:
-    """One link with its joint."""
+def body_of(joint: Joint, link: Link, number: NumberOf) -> Body:
+    """One link with its joint, in scalars made by `number`."""
 
     def within(error: float) -> Callable[[float], Scalar]:
         return lambda value: number(value, error)
@@ -254,7 +258,7 @@ def _body(joint: Joint, link: Link, number: NumberOf) -> Body:
     )
 
 
-def _columns(x: Array) -> list[float | Array]:
+def columns(x: Array) -> list[float | Array]:
     """The columns of (N, n); floats where there is one state."""
     if len(x) == 1:
         return [float(value) for value in x[0]]
@@ -263,4 +267,4 @@ def _columns(x: Array) -> list[float | Array]:
 
 def _vector(x: Array, arithmetic: Arithmetic) -> Vector:
     """(3,) or (N, 3) as a vector of scalars."""
-    return Vector(*(arithmetic.column(column) for column in _columns(np.atleast_2d(x))))
+    return Vector(*(arithmetic.column(column) for column in columns(np.atleast_2d(x))))

@@ -13,6 +13,7 @@ import typer
 from rich.console import Console
 
 from rttrr_pin.commands.audit import audit
+from rttrr_pin.commands.derive import derive
 from rttrr_pin.commands.inspect import inspect
 from rttrr_pin.commands.new import new
 from rttrr_pin.commands.output import AGREE, DISAGREE, INTERRUPTED, UNUSABLE, discard_stdout
@@ -21,7 +22,7 @@ from rttrr_pin.commands.validate import validate
 UsageError: Any = typer.BadParameter.__base__
 """Typer brings its own copy of click and does not export this class."""
 
-COMMANDS: tuple[Callable[..., int], ...] = (validate, inspect, audit, new)
+COMMANDS: tuple[Callable[..., int], ...] = (validate, audit, derive, inspect, new)
 """A new command is a module in `commands` and an entry here."""
 
 app = typer.Typer(

@@ -18,6 +18,8 @@ from rttrr_pin.model import Drive, LinkWrenches, Model, Wrench
 from rttrr_pin.model.inputs import Coordinates, coordinates, finite, real, vectors
 
 if TYPE_CHECKING:
+    from rttrr_pin.certify.umpire import Certificate
+    from rttrr_pin.certify.written import Numbers
     from rttrr_pin.inspect import Inspection
     from rttrr_pin.kernel import Kernel
 
@@ -119,6 +121,42 @@ class Robot:
         check_overflow(out, q_, v_, a_)
         shaped = {key: getattr(out, key).reshape(*batch, *getattr(out, key).shape[1:]) for key in RESULTS}
         return LinkWrenches.of(shaped, self.link_names, self.model.v_names)
+
+    def certify(
+        self,
+        q: Coordinates,
+        v: Coordinates,
+        a: Coordinates,
+        payload: Wrench | Sequence[Wrench] | None = None,
+        numbers: Numbers = "doubles",
+    ) -> Certificate:
+        """Between which two doubles the true tau, F, N, f, n lie: the recursion on balls, at rising precision.
+
+        The coordinates are taken as the exact doubles that they are. Every enclosure is proven, and as narrow as
+        doubles allow: one double or two neighbours, but for what is zero or nearly (see `certify.umpire.certify`).
+
+        Args:
+            q: joint coordinates, (..., nq) [rad or m], or a dict by joint name. A floating joint's quaternion turns by
+                the matrix that the formula yields, also where its length is 1 only to rounding.
+            v: joint rates, (..., nv) [rad/s or m/s].
+            a: joint accelerations, (..., nv) [rad/s^2 or m/s^2].
+            payload: what the robot exerts on its surroundings; leading axes broadcast with those of q, v, a.
+            numbers: the robot's numbers: `"doubles"`, as the model holds them, rounded rotations and axes included;
+                `"read"`, the doubles that the file's words stand for, and everything computed from them exactly;
+                `"text"`, the same from the file's decimals themselves.
+
+        Returns:
+            `.tau` (..., nv) and `.F`, `.N`, `.f`, `.n` (..., links, 3), each with `.lower` and `.upper`, in the frames
+            and units of `inverse_dynamics`.
+
+        Raises:
+            InputError: there are no such numbers: the robot has no file, or was altered since it was read.
+            ShapeError, NumberError, UnknownNameError, MissingJointError: as in `inverse_dynamics`.
+        """
+        from rttrr_pin.certify.umpire import certify
+
+        q, v, a = (coordinates(name, x, self.model.moving) for name, x in (("q", q), ("v", v), ("a", a)))
+        return certify(self.model, q, v, a, self._loads(payload), numbers)
 
     def compile(self, outputs: str | Sequence[str] = "tau", emitter: str | None = None) -> Kernel:
         """Compile the robot's dynamics for this processor.

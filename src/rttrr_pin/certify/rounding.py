@@ -22,8 +22,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rttrr_pin.algebra import Scalar, Vector
-from rttrr_pin.arithmetic import UNIT_ROUNDOFF, Arithmetic, Load, evaluate
-from rttrr_pin.model import LinkWrenches, Model
+from rttrr_pin.arithmetic import UNIT_ROUNDOFF, Arithmetic, Load, columns, dynamics, payloads_of
+from rttrr_pin.model import JointType, LinkWrenches, Model
 from rttrr_pin.model.wrench import LINK_QUANTITIES
 
 Array = NDArray[np.float64]
@@ -31,6 +31,8 @@ Real: TypeAlias = Any  # float | Array: what NumPy's stubs cannot combine withou
 
 SLACK = 1.0 + 1e-9
 """Covers the rounding of the bounds themselves."""
+
+PLAIN = (int, float)
 
 SINE_ULPS = 4
 """NumPy states at most 4 units in the last place for its vectorised float64 sine and cosine."""
@@ -40,7 +42,8 @@ SINE_ULPS = 4
 class Bounded:
     """A computed value and a bound on its distance from the true one.
 
-    The only plain numbers that it meets are small integers (0, 1, -1, 2), which are exact, also among themselves.
+    The only plain numbers that it meets are small integers (0, 1, -1, 2) and powers of two, which are exact, also among
+    themselves. What else it meets is asked to take the operation over, as dual numbers do.
 
     Attributes:
         value: as floating-point arithmetic gives it.
@@ -50,10 +53,12 @@ class Bounded:
     value: Real
     bound: Real
 
-    def __add__(self, other: Bounded | int) -> Bounded:
+    def __add__(self, other: Any) -> Bounded:
         if isinstance(other, Bounded):
             value = self.value + other.value
             return Bounded(value, self.bound + other.bound + UNIT_ROUNDOFF * abs(value))
+        if not isinstance(other, PLAIN):
+            return NotImplemented
         if other == 0:
             return self
         value = self.value + other
@@ -64,17 +69,19 @@ class Bounded:
     def __neg__(self) -> Bounded:
         return Bounded(-self.value, self.bound)
 
-    def __sub__(self, other: Bounded | int) -> Bounded:
+    def __sub__(self, other: Any) -> Bounded:
         return self.__add__(-other)
 
-    def __rsub__(self, other: int) -> Bounded:
+    def __rsub__(self, other: Any) -> Bounded:
         return (-self).__add__(other)
 
-    def __mul__(self, other: Bounded | int) -> Bounded | int:
+    def __mul__(self, other: Any) -> Bounded | int:
         if isinstance(other, Bounded):
             value = self.value * other.value
             inherited = _inherited(self, other)
             return Bounded(value, inherited + UNIT_ROUNDOFF * abs(value))
+        if not isinstance(other, PLAIN):
+            return NotImplemented
         if other == 0:
             return 0
         if other in (1, -1):
@@ -109,12 +116,38 @@ def _sincos(q: Bounded) -> tuple[Bounded, Bounded]:
     return Bounded(s, q.bound + ulps * abs(s)), Bounded(c, q.bound + ulps * abs(c))
 
 
+def _sign(x: Bounded | int) -> Bounded | int:
+    """Of rates, whose sign is that of an exact double; a rate of 0 may be the plain number."""
+    return Bounded(np.sign(x.value), 0.0) if isinstance(x, Bounded) else x
+
+
 BOUNDED = Arithmetic(
     number=_number,
     column=lambda values: Bounded(values, 0.0),
     sincos=_sincos,
-    sign=lambda x: Bounded(np.sign(x.value), 0.0),  # of rates, whose sign is that of an exact double
+    sign=_sign,
 )
+
+
+def coordinate_scalars(model: Model, q: Array) -> list[Bounded]:
+    """Coordinates as scalars: the doubles are exact, but for quaternions, which no doubles hold at unit length.
+
+    What is meant by s = (x, y, z, w) is s / |s|, which differs by | |s| - 1 | <= | |s|^2 - 1 | of each component; the
+    square is computed here within 4 u.
+
+    Args:
+        model: the robot.
+        q: coordinates, (N, nq) [rad or m].
+    """
+    scalars = [Bounded(column, 0.0) for column in columns(q)]
+    at = 0
+    for joint in model.moving:
+        if joint.type is JointType.FLOATING:
+            quaternion = scalars[at + 3 : at + 7]
+            defect = abs(sum(c.value * c.value for c in quaternion) - 1.0) + 8 * UNIT_ROUNDOFF
+            scalars[at + 3 : at + 7] = [Bounded(c.value, abs(c.value) * defect) for c in quaternion]
+        at += joint.nq
+    return scalars
 
 
 def bounded_dynamics(
@@ -124,7 +157,7 @@ def bounded_dynamics(
 
     Args:
         model: the robot.
-        q: coordinates, (N, nv) [rad or m]; the doubles are taken as exact.
+        q: coordinates, (N, nq) [rad or m]; the doubles are taken as exact, quaternions as what they are of unit length.
         v: rates, (N, nv).
         a: accelerations, (N, nv).
         loads: payloads.
@@ -134,19 +167,20 @@ def bounded_dynamics(
         the true value lies within bound of value.
     """
     rows = len(q)
-    result = evaluate(model, BOUNDED, q, v, a, loads)
+    v_, a_ = ([Bounded(column, 0.0) for column in columns(x)] for x in (v, a))
+    result = dynamics(model, BOUNDED, coordinate_scalars(model, q), v_, a_, payloads_of(loads, BOUNDED))
     values, bounds = {}, {}
     for key in ("tau", "tau_joint"):
-        values[key], bounds[key] = _columns(getattr(result, key), rows)
+        values[key], bounds[key] = values_and_bounds(getattr(result, key), rows)
     for key in LINK_QUANTITIES:
         vectors: list[Vector] = getattr(result, key)
-        value, bound = _columns([scalar for vector in vectors for scalar in vector], rows)
+        value, bound = values_and_bounds([scalar for vector in vectors for scalar in vector], rows)
         values[key], bounds[key] = value.reshape(rows, -1, 3), bound.reshape(rows, -1, 3)
     links, joints = model.link_names, model.v_names
     return LinkWrenches.of(values, links, joints), LinkWrenches.of(bounds, links, joints)
 
 
-def _columns(scalars: Sequence[Scalar], rows: int) -> tuple[Array, Array]:
+def values_and_bounds(scalars: Sequence[Scalar], rows: int) -> tuple[Array, Array]:
     """Values and bounds of scalars, side by side."""
     values, bounds = np.empty((rows, len(scalars))), np.zeros((rows, len(scalars)))
     for column, scalar in enumerate(scalars):

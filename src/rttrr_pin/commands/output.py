@@ -1,4 +1,4 @@
-"""What the commands share: exit codes, a console whose reader may leave, a progress bar, JSON to a file or stdout."""
+"""What the commands share: exit codes, a console whose reader may leave, a progress bar, text to a file or stdout."""
 
 from __future__ import annotations
 

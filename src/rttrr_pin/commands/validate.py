@@ -10,7 +10,11 @@ from typing import Annotated, Any, Literal
 
 import typer
 
+from rttrr_pin.commands.numbers import numbers_of
 from rttrr_pin.commands.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json
+
+MOST_LAW_STATES = 1000
+"""Laws cost far more than the comparison, and a law that fails does so in nearly every state."""
 
 
 def validate(
@@ -43,7 +47,12 @@ def validate(
     friction: Annotated[
         bool, typer.Option("--friction", help="Take damping and friction of <dynamics> into tau.")
     ] = False,
-    oracle: Annotated[str, typer.Option(help="The program to compare with.")] = "pinocchio",
+    oracle: Annotated[
+        str, typer.Option(help="What to compare with: pinocchio, or lagrange (driving forces alone).")
+    ] = "pinocchio",
+    laws: Annotated[
+        bool, typer.Option("--laws", help="Also try the laws of mechanics, which need no other program.")
+    ] = False,
     state: Annotated[int | None, typer.Option(help="Print this one state in full, ours beside the oracle's.")] = None,
     json: Annotated[str | None, typer.Option(help="Write the outcome as JSON to this file; '-' is stdout.")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
@@ -54,11 +63,14 @@ def validate(
     Several robots each go through a fixed and a floating base, and those that cannot be compared are listed with what
     in their file stops them.
 
-    Exit code: 0 agree, 1 disagree, 2 unusable input (of several robots, at least one).
+    With --laws, also power balance, momentum, symmetry, linearity, invariance and the like, on the first 1,000 states.
+
+    Exit code: 0 agree, 1 disagree or a law violated, 2 unusable input (of several robots, at least one).
     """
     import rttrr_pin
     from rttrr_pin import report
     from rttrr_pin import validate as validation
+    from rttrr_pin.errors import InputError
 
     several = _several(robot)
     if several:
@@ -71,12 +83,13 @@ def validate(
             "--base": base != "fixed",
             "--friction": friction,
             "--full": full,
+            "--laws": laws,
         }
         _refuse([option for option, given in one_robot.items() if given])
         return _validate_several(several, validation.Task(states, seed, family, oracle), json, quiet)
     loading: dict[str, Any] = {"base": base, "friction": friction}
     if gravity is not None:
-        loading["gravity"] = _numbers("--gravity", gravity, 3)
+        loading["gravity"] = numbers_of("--gravity", gravity, 3)
     loaded = rttrr_pin.load(robot, **loading)
     chosen: dict[str, Any] = {
         "seed": seed,
@@ -86,13 +99,18 @@ def validate(
     }
     console = Output(quiet=quiet or json == "-", soft_wrap=False)
     if state is not None:
+        if laws:
+            raise InputError("--laws tries many states, and --state names one: leave one of them out")
         one = validation.compare_state(loaded, state, **chosen)
         write_json(json, lambda: report.state_data(one))
         report.show_state(one, console)
         return AGREE if one.agrees else DISAGREE
     with progress(states, quiet) as advance:
         result = validation.validate(loaded, states, **chosen, progress=advance)
-    write_json(json, lambda: report.validation_data(result))
+    tried = _laws(loaded, min(states, MOST_LAW_STATES), chosen, quiet) if laws else None
+    write_json(
+        json, lambda: report.validation_data(result) | ({} if tried is None else {"laws": report.laws_data(tried)})
+    )
     again = {
         "--seed": seed or None,
         "--family": family if family != "uniform" else None,
@@ -104,7 +122,18 @@ def validate(
         "--oracle": oracle if oracle != "pinocchio" else None,
     }
     report.show_validation(result, console, _rerun(robot, again, friction), full)
-    return AGREE if result.agrees else DISAGREE
+    if tried is not None:
+        report.show_laws(tried, console)
+    return AGREE if result.agrees and (tried is None or tried.holds) else DISAGREE
+
+
+def _laws(robot: Any, states: int, chosen: Mapping[str, Any], quiet: bool) -> Any:
+    """The laws on the first of the states; a random payload is what they take by themselves."""
+    from rttrr_pin import Wrench, validate
+
+    payload = chosen["payload"] if isinstance(chosen["payload"], Wrench) else None
+    with progress(states, quiet) as advance:
+        return validate.check_laws(robot, states, chosen["seed"], chosen["family"], payload, progress=advance)
 
 
 def _several(robot: str) -> dict[str, Path]:
@@ -152,22 +181,9 @@ def _payload(text: str | None, link: str | None, axes: str) -> Any:
         return text
     if axes not in ("link", "base"):
         raise InputError(f"--payload-axes is {axes!r}: expected link or base")
-    numbers = _numbers("--payload", text, 6)
+    numbers = numbers_of("--payload", text, 6)
     named: Literal["link", "base"] = "base" if axes == "base" else "link"
     return Wrench(force=numbers[:3], moment=numbers[3:], link=link, expressed_in=named)
-
-
-def _numbers(option: str, text: str, count: int) -> list[float]:
-    """Numbers separated by commas or blanks."""
-    from rttrr_pin.errors import InputError
-    from rttrr_pin.model.strict import NUMBER
-
-    words = text.replace(",", " ").split()
-    numbers = [float(word) for word in words] if all(NUMBER.fullmatch(word) for word in words) else []
-    if len(numbers) != count:
-        example = ",".join("0" for _ in range(count))
-        raise InputError(f"{option} is {text!r}: expected {count} numbers separated by commas, such as {example}")
-    return numbers
 
 
 def _rerun(robot: str, options: Mapping[str, object], friction: bool) -> str:

@@ -5,15 +5,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from rttrr_pin.arithmetic import Arithmetic
 from rttrr_pin.errors import InputError
+from rttrr_pin.kernel.bounds import with_bounds
 from rttrr_pin.kernel.columns import arranged
 from rttrr_pin.kernel.expression import Graph, GraphFullError
 from rttrr_pin.kernel.program import Program
-from rttrr_pin.kernel.quantities import QUANTITIES
+from rttrr_pin.kernel.quantities import BOUND, QUANTITIES
 from rttrr_pin.kernel.recorder import Recorder
 from rttrr_pin.kernel.schedule import Schedule
 from rttrr_pin.kernel.simplify import simplify
-from rttrr_pin.kernel.trace import TRACING, PayloadSlot, fields, outputs_of, record, trace
+from rttrr_pin.kernel.trace import KNOWING, TRACING, PayloadSlot, fields, outputs_of, record, trace
 from rttrr_pin.model import Model
 
 STRAIGHT_LINE = 20_000
@@ -47,6 +49,8 @@ def build(
     Raises:
         InputError: the robot is too large for these outputs.
     """
+    if any(name.endswith(BOUND) for name in outputs):
+        return _bounded(model, outputs, payloads)
     if straight_line is None or not all(QUANTITIES[name].by_steps for name in outputs):
         return simplify(_whole(model, outputs, payloads))
     try:
@@ -57,10 +61,23 @@ def build(
     return simplify(program) if short else schedule(model, outputs, payloads)
 
 
-def _whole(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot]) -> Program:
+def _bounded(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot]) -> Program:
+    """Values and bounds on their rounding; no inertia is moved between links, which would round it."""
+    plain = tuple(dict.fromkeys(name.removesuffix(BOUND) for name in outputs))
+    program = simplify(_whole(model, plain, payloads, lumped=False, arithmetic=KNOWING))
+    return with_bounds(program, outputs_of(model, outputs))
+
+
+def _whole(
+    model: Model,
+    outputs: Sequence[str],
+    payloads: Sequence[PayloadSlot],
+    lumped: bool = True,
+    arithmetic: Arithmetic = TRACING,
+) -> Program:
     """Straight lines, however long, but no longer than can be compiled."""
     try:
-        return trace(model, outputs, payloads, most=LONGEST)
+        return trace(model, outputs, payloads, lumped, LONGEST, arithmetic)
     except GraphFullError:
         names = [name for name in outputs if not QUANTITIES[name].by_steps] or outputs
         raise InputError(

@@ -17,6 +17,8 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
+from rttrr_pin.kernel.known import Known, error_of, exactly
+
 Number: TypeAlias = int | float
 
 
@@ -32,6 +34,7 @@ class Op(enum.IntEnum):
     SIN = 6
     COS = 7
     SIGN = 8
+    ABS = 9
 
 
 LEAVES = (Op.CONSTANT, Op.INPUT)
@@ -76,15 +79,18 @@ class Graph:
         return number
 
     def constant(self, value: Number) -> int:
-        """A number of the robot; +0 and -0 are one, since no sum or product of the recursion tells them apart."""
-        value = float(value) + 0.0
-        key = (Op.CONSTANT, value)
+        """A number of the robot; +0 and -0 are one, since no sum or product of the recursion tells them apart.
+
+        Numbers with a bound on their error (`Known`) share a node only where the bounds are equal too.
+        """
+        error = error_of(value)
+        key = (Op.CONSTANT, float(value) + 0.0, error)
         number = self._known.get(key)
         if number is None:
             number = self._known[key] = len(self.op)
             self.op.append(Op.CONSTANT)
             self.args.append(())
-            self.value[number] = value
+            self.value[number] = Known(float(value) + 0.0, error) if isinstance(value, Known) else float(value) + 0.0
         return number
 
     def input(self, place: int) -> int:
@@ -92,8 +98,8 @@ class Graph:
         return self._node(Op.INPUT, (place,))
 
     def is_constant(self, x: int, value: float | None = None) -> bool:
-        """Whether a node is a constant, or that constant."""
-        return self.op[x] is Op.CONSTANT and (value is None or self.value[x] == value)
+        """Whether a node is a constant, or exactly that constant."""
+        return self.op[x] is Op.CONSTANT and (value is None or exactly(self.value[x], value))
 
     def neg(self, x: int) -> int:
         """The opposite -x."""
@@ -149,25 +155,25 @@ class Graph:
         """A constant times y."""
         if self.op[y] is Op.CONSTANT:
             return self.constant(factor * self.value[y])
-        if factor == 0.0:
+        if exactly(factor, 0.0):
             return self.constant(0.0)
         if factor < 0.0:
             return self.neg(self._scaled(-factor, y))
         if self.op[y] is Op.NEG:
             return self.neg(self._scaled(factor, self.args[y][0]))
-        if factor == 1.0:
+        if exactly(factor, 1.0):
             return y
         if self.op[y] is Op.MUL and self.op[self.args[y][0]] is Op.CONSTANT:
             return self._scaled(factor * self.value[self.args[y][0]], self.args[y][1])
         return self._node(Op.MUL, (self.constant(factor), y))
 
     def function(self, op: Op, x: int) -> int:
-        """Sine, cosine or sign; odd and even ones lose the sign of their argument."""
+        """Sine, cosine, sign or absolute value; odd and even ones lose the sign of their argument."""
         if self.op[x] is Op.CONSTANT:
             return self.constant(FUNCTIONS[op](self.value[x]))
         if self.op[x] is Op.NEG:
             inner = self.function(op, self.args[x][0])
-            return inner if op is Op.COS else self.neg(inner)
+            return inner if op in (Op.COS, Op.ABS) else self.neg(inner)
         return self._node(op, (x,))
 
     def apply(self, op: Op, args: Sequence[int]) -> int:
@@ -191,6 +197,7 @@ FUNCTIONS: dict[Op, Callable[[float], float]] = {
     Op.SIN: math.sin,
     Op.COS: math.cos,
     Op.SIGN: lambda x: float((x > 0.0) - (x < 0.0)),
+    Op.ABS: abs,
 }
 """Each function of a number."""
 
@@ -202,6 +209,7 @@ BUILD: dict[Op, Callable[..., int]] = {
     Op.SIN: lambda graph, x: graph.function(Op.SIN, x),
     Op.COS: lambda graph, x: graph.function(Op.COS, x),
     Op.SIGN: lambda graph, x: graph.function(Op.SIGN, x),
+    Op.ABS: lambda graph, x: graph.function(Op.ABS, x),
 }
 """The constructor of each operation."""
 
@@ -247,7 +255,7 @@ class Node:
         return Node(self.graph, self.graph.neg(self.number))
 
     def function(self, op: Op) -> Node:
-        """Sine, cosine or sign of it."""
+        """Sine, cosine, sign or absolute value of it."""
         return Node(self.graph, self.graph.function(op, self.number))
 
 

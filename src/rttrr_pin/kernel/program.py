@@ -152,5 +152,6 @@ NUMERIC: dict[Op, Callable[..., Array]] = {
     Op.SIN: np.sin,
     Op.COS: np.cos,
     Op.SIGN: np.sign,
+    Op.ABS: np.abs,
 }
 """Each operation on numbers."""

@@ -13,10 +13,11 @@ import numpy as np
 
 from rttrr_pin.algebra import Matrix, Scalar, Vector
 from rttrr_pin.arithmetic import Arithmetic, Result, bodies, dynamics
-from rttrr_pin.dual import Dual, part_of, value_of
-from rttrr_pin.joint_motion import Body, quaternion_rotation
-from rttrr_pin.model import Joint, JointType, Model
+from rttrr_pin.dual import Dual, part_of
+from rttrr_pin.joint_motion import Body
+from rttrr_pin.model import Joint, Model
 from rttrr_pin.newton_euler import Payload
+from rttrr_pin.tangent import over_duals, tangent
 
 INERTIAL_PARAMETERS = ("m", "mx", "my", "mz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz")
 """Of one link, the tensor about the origin of {i}: the order of Pinocchio's `Inertia.toDynamicParameters`."""
@@ -119,9 +120,9 @@ def _derivatives(by: str) -> Quantity:
     def scalars(motion: Motion) -> list[Scalar]:
         n = motion.model.nv
         moved = {name: getattr(motion, name) for name in "qva"}
-        seed = _tangent if by == "q" else _plain
+        seed = tangent if by == "q" else _plain
         moved[by] = seed(motion.model.moving, moved[by], motion.arithmetic)
-        tau = dynamics(motion.model, _dual(motion.arithmetic), **moved, payloads=motion.payloads).tau
+        tau = dynamics(motion.model, over_duals(motion.arithmetic), **moved, payloads=motion.payloads).tau
         return [part_of(row, k) for row in tau for k in range(n)]
 
     return Quantity("qva", lambda model: (model.nv, model.nv), scalars, payload=True, by_steps=False)
@@ -129,60 +130,6 @@ def _derivatives(by: str) -> Quantity:
 
 def _plain(joints: Sequence[Joint], x: Sequence[Scalar], arithmetic: Arithmetic) -> list[Dual]:
     return [Dual(value, {k: 1.0}) for k, value in enumerate(x)]
-
-
-def _tangent(joints: Sequence[Joint], q: Sequence[Scalar], arithmetic: Arithmetic) -> list[Dual]:
-    """Coordinates that move as the rates say: those of planar and floating joints are turned into the joint's frame."""
-    duals: list[Dual] = []
-    at, k = 0, 0
-    for joint in joints:
-        own = q[at : at + joint.nq]
-        if joint.type is JointType.FLOATING:
-            duals += _floating_tangent(own, k)
-        elif joint.type is JointType.PLANAR:
-            duals += _planar_tangent(own, k, arithmetic)
-        else:
-            duals += [Dual(x, {k + i: 1.0}) for i, x in enumerate(own)]
-        at, k = at + joint.nq, k + joint.nv
-    return duals
-
-
-def _planar_tangent(own: Sequence[Scalar], k: int, arithmetic: Arithmetic) -> list[Dual]:
-    """With x' = c v_x - s v_y, y' = s v_x + c v_y and theta' = w_z for directions k to k + 2."""
-    x, y, theta = own
-    s, c = arithmetic.sincos(theta)
-    return [Dual(x, {k: c, k + 1: -s}), Dual(y, {k: s, k + 1: c}), Dual(theta, {k + 2: 1.0})]
-
-
-def _floating_tangent(own: Sequence[Scalar], k: int) -> list[Dual]:
-    """With p' = R v and (x, y, z, w)' = (x, y, z, w) (w_x, w_y, w_z, 0) / 2 for directions k (v_x) to k + 5 (w_z)."""
-    x, y, z, w = own[3:]
-    R = quaternion_rotation(x, y, z, w)
-    position = [Dual(p, {k + i: r for i, r in enumerate(row)}) for p, row in zip(own[:3], R.rows, strict=True)]
-    turns = ((w, -z, y), (z, w, -x), (-y, x, w), (-x, -y, -z))
-    quaternion = [
-        Dual(c, {k + 3 + i: t * 0.5 for i, t in enumerate(turn)}) for c, turn in zip((x, y, z, w), turns, strict=True)
-    ]
-    return position + quaternion
-
-
-def _dual(arithmetic: Arithmetic) -> Arithmetic:
-    """Dual numbers over the scalars of an arithmetic."""
-
-    def sincos(q: Scalar) -> tuple[Scalar, Scalar]:
-        s, c = arithmetic.sincos(value_of(q))
-        if not isinstance(q, Dual):
-            return s, c
-        return Dual(s, {k: c * part for k, part in q.parts.items()}), Dual(
-            c, {k: -(s * part) for k, part in q.parts.items()}
-        )
-
-    return Arithmetic(
-        number=arithmetic.number,
-        column=arithmetic.column,
-        sincos=sincos,
-        sign=lambda x: arithmetic.sign(value_of(x)),  # constant but for the jump at rest
-    )
 
 
 def _per_joint(model: Model) -> tuple[int, ...]:
@@ -207,3 +154,14 @@ QUANTITIES: dict[str, Quantity] = {
     "dtau_da": _derivatives("a"),
 }
 """By name; `robot.compile(outputs=...)` takes any of them."""
+
+BOUND = "_bound"
+"""What the name of a bound ends with, behind that of what it bounds."""
+
+
+def _bound_of(quantity: Quantity) -> Quantity:
+    """A bound on the rounding of a quantity: `bounds.with_bounds` makes it from the quantity's own operations."""
+    return replace(quantity, of_links=True, by_steps=False)
+
+
+QUANTITIES |= {name + BOUND: _bound_of(quantity) for name, quantity in QUANTITIES.items()}

@@ -165,5 +165,6 @@ SINGLE: dict[Op, Callable[..., Any]] = {
     Op.SIN: lambda x: x.function(Op.SIN),
     Op.COS: lambda x: x.function(Op.COS),
     Op.SIGN: lambda x: x.function(Op.SIGN),
+    Op.ABS: lambda x: x.function(Op.ABS),
 }
 """Each operation on scalars."""

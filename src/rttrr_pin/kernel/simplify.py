@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 
 from rttrr_pin.kernel.cost import cost
 from rttrr_pin.kernel.expression import Graph, Op
+from rttrr_pin.kernel.known import exactly
 from rttrr_pin.kernel.program import Program
 
 Pass = Callable[[Program], Program]
@@ -112,7 +113,7 @@ class _Collector:
     def _of_node(self, node: int) -> Form:
         graph = self.graph
         if graph.op[node] is Op.CONSTANT:
-            return {(): graph.value[node]} if graph.value[node] else {}
+            return {} if graph.is_constant(node, 0.0) else {(): graph.value[node]}
         if graph.op[node] is Op.NEG:
             return {(graph.args[node][0],): -1.0}
         return {(node,): 1.0}
@@ -125,7 +126,7 @@ class _Collector:
             form = dict(self._shared(args[0]))
             for m, c in self._shared(args[1]).items():
                 form[m] = form.get(m, 0.0) + sign * c
-            return {m: c for m, c in form.items() if c != 0.0} if len(form) <= LONGEST else None
+            return {m: c for m, c in form.items() if not exactly(c, 0.0)} if len(form) <= LONGEST else None
         if op is Op.MUL:
             return self._product(*args)
         return None
@@ -160,15 +161,15 @@ class _Collector:
     def _sum(self, form: Form) -> int:
         """Sums of equal coefficients first, then each times its coefficient."""
         graph = self.graph
-        groups: dict[float, list[tuple[int, bool]]] = {}
+        groups: dict[int, list[tuple[int, bool]]] = {}  # by the node of the coefficient
         for m, c in sorted(form.items()):
-            groups.setdefault(abs(c), []).append((self._monomial(m), c < 0.0))
+            groups.setdefault(graph.constant(abs(c)), []).append((self._monomial(m), c < 0.0))
         total = graph.constant(0.0)
         for factor, terms in groups.items():
             part = graph.constant(0.0)
             for node, negative in sorted(terms):
                 part = graph.sub(part, node) if negative else graph.add(part, node)
-            total = graph.add(total, graph.mul(graph.constant(factor), part))
+            total = graph.add(total, graph.mul(factor, part))
         return total
 
     def _monomial(self, m: Monomial) -> int:

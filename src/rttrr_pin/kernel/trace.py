@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from rttrr_pin.algebra import Scalar, Vector
 from rttrr_pin.arithmetic import Arithmetic
 from rttrr_pin.kernel.expression import Graph, Node, Op
+from rttrr_pin.kernel.known import Known
 from rttrr_pin.kernel.lump import lump
 from rttrr_pin.kernel.program import Field, Program
 from rttrr_pin.kernel.quantities import QUANTITIES, Motion
@@ -35,6 +36,7 @@ def trace(
     payloads: Sequence[PayloadSlot] = (),
     lumped: bool = True,
     most: int | None = None,
+    arithmetic: Arithmetic | None = None,
 ) -> Program:
     """The program of a robot.
 
@@ -44,6 +46,7 @@ def trace(
         payloads: where payloads act.
         lumped: whether inertia may be moved between links where that leaves the outputs as they are.
         most: nodes to record before giving up; None for any number.
+        arithmetic: `TRACING` or `KNOWING`; None for the former.
 
     Returns:
         The program as the specification's operations leave it; `simplify` shortens it.
@@ -52,7 +55,7 @@ def trace(
         GraphFullError: it takes more nodes.
     """
     graph = Graph(most=most)
-    results = record(graph, TRACING, model, outputs, payloads, lumped)
+    results = record(graph, arithmetic or TRACING, model, outputs, payloads, lumped)
     return Program(graph, fields(model, outputs, payloads), outputs_of(model, outputs), results)
 
 
@@ -139,3 +142,6 @@ def _sign(x: Scalar) -> Scalar:
 
 TRACING = Arithmetic(number=_value, column=lambda x: x, sincos=_sincos, sign=_sign, keep=_keep)
 """The arithmetic that records; numbers of the model stay floats and fold among themselves."""
+
+KNOWING = replace(TRACING, number=Known)
+"""The same; numbers of the model carry a bound on their error, and so do those that they fold into."""

@@ -19,7 +19,10 @@ from rttrr_pin.model import LinkWrenches, Model
 
 Array = NDArray[np.float64]
 
-ORACLES = {"pinocchio": "rttrr_pin.oracles.pinocchio:PinocchioOracle"}
+ORACLES = {
+    "pinocchio": "rttrr_pin.oracles.pinocchio:PinocchioOracle",
+    "lagrange": "rttrr_pin.oracles.lagrange:LagrangeOracle",
+}
 """Where the oracle of each name is."""
 
 
@@ -28,9 +31,11 @@ class Evaluation:
     """What an oracle says of a batch.
 
     Attributes:
-        wrenches: the five quantities, in the frames and signs of `Robot.inverse_dynamics`.
+        wrenches: the quantities that it has, in the frames and signs of `Robot.inverse_dynamics`; of F, N, f, n that it
+            has not, the links axis is empty.
         rounding: by quantity (F, N, f, n), (N, links): the size of terms that cancel in this oracle's formulas and do
-            not occur in ours, times eps and the few operations they go through. Zero for formulas like ours.
+            not occur in ours, times eps and the few operations they go through. Zero for formulas like ours. Under
+            "tau", (N, nv), a bound on all rounding of its driving forces, where the oracle can give one.
     """
 
     wrenches: LinkWrenches
@@ -43,10 +48,12 @@ class Oracle(Protocol):
     Attributes:
         name: as in `ORACLES`.
         version: of the library.
+        quantities: which of tau, F, N, f, n it gives, in this order; tau is always one of them.
     """
 
     name: str
     version: str
+    quantities: tuple[str, ...]
 
     def __init__(self, model: Model) -> None:
         """Build the oracle's own model, and compare it with ours.
@@ -57,7 +64,7 @@ class Oracle(Protocol):
         """
 
     def evaluate(self, q: Array, v: Array, a: Array, loads: Sequence[Load] = ()) -> Evaluation:
-        """The five quantities of a batch of states, q, v, a: (N, nv) each."""
+        """The quantities that it has of a batch of states, q: (N, nq), v, a: (N, nv) each."""
 
 
 def make_oracle(name: str, model: Model) -> Oracle:

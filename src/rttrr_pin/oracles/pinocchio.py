@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from rttrr_pin.arithmetic import EPS, Load
 from rttrr_pin.errors import ModelMismatchError, OracleError
-from rttrr_pin.model import LinkWrenches, Model
+from rttrr_pin.model import QUANTITIES, LinkWrenches, Model
 from rttrr_pin.model.tree import ROOT_JOINT, UNIVERSE
 from rttrr_pin.oracles import Evaluation
 from rttrr_pin.oracles.pinocchio_joints import Motion, driving_forces, expand, pin_joints, reach, reduce_forces
@@ -39,6 +39,7 @@ class PinocchioOracle:
 
     name = "pinocchio"
     version: str = pin.__version__
+    quantities = QUANTITIES
 
     def __init__(self, model: Model) -> None:
         """Build Pinocchio's model, and hold it against what the file says.

@@ -9,13 +9,13 @@ from pathlib import Path
 
 from rttrr_pin.errors import InputError
 from rttrr_pin.paper.arm import read_robot
-from rttrr_pin.paper.latex import read_latex
 from rttrr_pin.paper.match import as_terms
 from rttrr_pin.paper.printed import Split
-from rttrr_pin.paper.python import read_python
+from rttrr_pin.paper.reading.latex import read_latex
+from rttrr_pin.paper.reading.python import read_python
+from rttrr_pin.paper.reading.vocabulary import Vocabulary
 from rttrr_pin.paper.tables import Table, read_table
 from rttrr_pin.paper.templates import filled, letters_in
-from rttrr_pin.paper.vocabulary import Vocabulary
 from rttrr_pin.symbolic.chain import Letters, SymbolicRobot
 from rttrr_pin.symbolic.symbols import Symbol, Terms, renamed
 

@@ -6,6 +6,7 @@ from rttrr_pin.report.audit import audit_data, show_audit, show_equations
 from rttrr_pin.report.data import as_json, state_data, validation_data, write_whole
 from rttrr_pin.report.errata import errata
 from rttrr_pin.report.inspection import inspection_data, repair_data, show_inspection, show_repair
+from rttrr_pin.report.laws import laws_data, show_laws
 from rttrr_pin.report.many import many_data, show_many
 from rttrr_pin.report.text import show_state, show_validation
 
@@ -14,11 +15,13 @@ __all__ = [
     "audit_data",
     "errata",
     "inspection_data",
+    "laws_data",
     "many_data",
     "repair_data",
     "show_audit",
     "show_equations",
     "show_inspection",
+    "show_laws",
     "show_many",
     "show_repair",
     "show_state",

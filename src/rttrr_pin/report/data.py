@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from rttrr_pin.errors import InputError
+from rttrr_pin.report.settlement import settlement_data
 from rttrr_pin.validate import Row, StateReport, Validation
 
 GATE = (
@@ -44,6 +45,8 @@ def validation_data(result: Validation) -> dict[str, Any]:
         else {"quantity": worst.quantity, "at": worst.at, "state": worst.share.state, "share": worst.share.value},
         "normwise": {quantity: asdict(seen) for quantity, seen in result.whole.items()},
         "quantities": quantities,
+        "failing_states": result.failing,
+        "settled": [settlement_data(settled) for settled in result.settled],
         "seconds": result.seconds,
     }
 
@@ -80,10 +83,13 @@ def state_data(report: StateReport) -> dict[str, Any]:
             for load in states.loads
         ],
         "ours": {key: x[0].tolist() for key, x in report.ours.items()},
-        "theirs": {key: x[0].tolist() for key, x in report.theirs.items()},
+        "theirs": {
+            key: x[0].tolist() for key, x in report.theirs.items() if any(row.quantity == key for row in report.rows)
+        },
         "bound": {key: x[0].tolist() for key, x in report.bound.items()},
         "gaps": gaps,
         "gate": GATE,
+        "settled": settlement_data(report.settled),
         "verdict": "agree" if report.agrees else "disagree",
     }
 

@@ -13,6 +13,7 @@ from rich.text import Text
 
 from rttrr_pin.model import QUANTITIES, STANDARD_GRAVITY
 from rttrr_pin.model.wrench import LINK_QUANTITIES
+from rttrr_pin.report.settlement import show_settled, show_settlement
 from rttrr_pin.validate import Row, StateReport, Validation
 
 Array = NDArray[np.float64]
@@ -41,6 +42,7 @@ def show_validation(result: Validation, console: Console, rerun: str = "", full:
         console.print(Text(f"the worst of {len(result.rows)} rows for each quantity; --full shows all"))
     console.print(Text(LEGEND, "dim"))
     _verdict(result.agrees, result, console)
+    show_settled(result, console)
     worst = result.worst
     if worst is not None and rerun:
         where = f"worst state {worst.share.state} ({worst.quantity} at {worst.at})"
@@ -80,6 +82,7 @@ def show_state(report: StateReport, console: Console) -> None:
     worst = report.rows[int(np.argmax(shares))]
     told = f"closest to the gate: {worst.quantity} at {worst.at}, {max(shares):.3f} of what rounding can explain"
     console.print(_word(report.agrees), Text(told))
+    show_settlement(report, console)
 
 
 def _unusual(result: Validation) -> str:
@@ -139,7 +142,7 @@ def _values(report: StateReport) -> Iterable[tuple[Array, Array]]:
     ours, theirs = report.ours, report.theirs
     for column in range(ours.tau.shape[1]):
         yield ours.tau[0, column, None], theirs.tau[0, column, None]
-    for key in LINK_QUANTITIES:
+    for key in (key for key in LINK_QUANTITIES if any(row.quantity == key for row in report.rows)):
         yield from zip(getattr(ours, key)[0], getattr(theirs, key)[0], strict=True)
 
 

@@ -227,7 +227,12 @@ def default_letters(model: Model, payload_link: int | None = None) -> Letters:
     """
     named = [*_link_letters(model), *_gravity_letters()]
     used = [letter for letter in named if value_of_slot(model, letter[2][0])]
-    return letters_of(model, [*used, *(() if payload_link is None else _payload_letters(payload_link))])
+    return letters_of(model, [*used, *_payload_letters(payload_link)])
+
+
+def payload_letters(model: Model, payload_link: int | None) -> Letters:
+    """Letters for the payload alone: the robot's own numbers stay numbers."""
+    return letters_of(model, _payload_letters(payload_link))
 
 
 def _link_letters(model: Model) -> Iterator[Named]:
@@ -252,7 +257,9 @@ def _gravity_letters() -> Iterator[Named]:
         yield _letter((("gravity", x),), letter, letter, -1)
 
 
-def _payload_letters(link: int) -> Iterator[Named]:
+def _payload_letters(link: int | None) -> Iterator[Named]:
+    if link is None:
+        return
     up = f"{{}}^{index(link + 1)}"
     for kind, letter in (("force", "f"), ("moment", "n")):
         for x, axis in enumerate(AXES):

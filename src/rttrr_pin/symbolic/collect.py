@@ -20,7 +20,7 @@ GROUPS = (Role.ACCELERATION, Role.RATE, Role.SIGN, Role.GRAVITY, Role.PAYLOAD)
 WITHIN = (Role.PARAMETER, Role.STEP, Role.UNKNOWN, Role.COORDINATE, Role.SINE, Role.COSINE)
 """The order of the other factors of a product."""
 
-DEPTH = 2
+DEPTH = 3
 """Brackets within the bracket of a group."""
 
 LEAST, MOST = 4, 100
@@ -39,7 +39,6 @@ class Presenter:
 
     def __init__(self, symbols: Mapping[str, Symbol]) -> None:
         self.symbols = symbols
-        self._ring = Ring(symbols.values())
         self._rank = {
             name: ((*GROUPS, *WITHIN).index(symbol.role), place) for place, (name, symbol) in enumerate(symbols.items())
         }
@@ -93,12 +92,14 @@ class Presenter:
         """A number, and sums whose product with it these terms are; the order does not depend on who factors them."""
         if not LEAST <= len(terms) <= MOST or any(x.denominator > SIMPLE for x in terms.values()):
             return Fraction(1), [terms]
-        number, factors = self._ring.polynomial(terms).factor()
+        used = {name for key in terms for name, _ in key}
+        ring = Ring(symbol for name, symbol in self.symbols.items() if name in used)  # a small one: FLINT's time grows
+        number, factors = ring.polynomial(terms).factor()
         if sum(power for _, power in factors) == 1:
             return Fraction(1), [terms]
         total, found = Fraction(int(number.p), int(number.q)), []
         for factor, power in factors:
-            share, _, rest = self._content(self._ring.terms(factor))
+            share, _, rest = self._content(ring.terms(factor))
             share, rest = self._upright(share, rest)
             total *= share**power
             found += [rest] * power
@@ -116,7 +117,7 @@ class Presenter:
             taken = {factors: x for factors, x in rest.items() if any(name == shared for name, _ in factors)}
             rest = {factors: x for factors, x in rest.items() if factors not in taken}
             parts += self._factored(taken, depth - 1)
-        return (*parts, *self._sorted(rest))
+        return (*_merged(parts), *self._sorted(rest))
 
     def _most_shared(self, terms: Terms) -> str | None:
         """The symbol that stands in most terms, in two at least."""
@@ -170,6 +171,23 @@ class Presenter:
         else:
             kind = 2 + min(GROUPS.index(role) for role in powers)
         return kind, self._order(outer)
+
+
+def _merged(parts: Iterable[Product]) -> list[Product]:
+    """The same sum, where x B + y B is (x + y) B."""
+    by_brackets: dict[tuple[Sum, ...], list[Product]] = {}
+    for part in parts:
+        brackets = tuple(factor for factor in part.factors if isinstance(factor, Sum))
+        by_brackets.setdefault(brackets, []).append(part)
+    merged: list[Product] = []
+    for brackets, alike in by_brackets.items():
+        if len(alike) == 1 or not brackets:
+            merged += alike
+            continue
+        sign = 1 if alike[0].coefficient > 0 else -1
+        left = [Product(sign * x.coefficient, x.factors[: -len(brackets)]) for x in alike]
+        merged.append(Product(Fraction(sign), (Sum(tuple(left)), *brackets)))
+    return merged
 
 
 def _with_squares(terms: Terms, cosine: str, sine: str) -> Terms:

@@ -78,7 +78,7 @@ def motion_symbols(model: Model) -> Iterator[Symbol]:
         length = 0 if rotation else 1
         yield Symbol(f"v_{k}", rate, Role.RATE, Dimension(length=length, time=-1), k)
         yield Symbol(f"a_{k}", twice, Role.ACCELERATION, Dimension(length=length, time=-2), k)
-        yield Symbol(f"sign_{k}", rf"\operatorname{{sgn}}({rate})", Role.SIGN, index=k)
+        yield Symbol(f"sign_{k}", rf"\mathrm{{sgn}}({rate})", Role.SIGN, index=k)
 
 
 def index(k: int) -> str:

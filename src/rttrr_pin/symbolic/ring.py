@@ -34,7 +34,7 @@ class Ring:
         self._circles = [
             (i, self[name] ** 2 + self[cosine] ** 2 - 1)
             for i, name in enumerate(self._names)
-            if (cosine := self.cosine_of(name)) is not None
+            if (cosine := self.cosine_of(name)) in self.symbols and cosine is not None
         ]
 
     def __getitem__(self, name: str) -> Polynomial:

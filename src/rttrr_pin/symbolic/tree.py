@@ -21,7 +21,7 @@ class Product:
 
     Attributes:
         coefficient: with the sign.
-        factors: powers of symbols, and at most one sum, which comes last.
+        factors: powers of symbols, then sums.
     """
 
     coefficient: Fraction

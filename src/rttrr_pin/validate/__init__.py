@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rttrr_pin.arithmetic import EPS
 from rttrr_pin.validate.compare import Comparison, Row
+from rttrr_pin.validate.laws import LawReport, LawRow, check_laws
 from rttrr_pin.validate.many import BASES, Entry, Task, validate_many
 from rttrr_pin.validate.run import StateReport, Validation, compare_state, validate
 from rttrr_pin.validate.states import FAMILIES, Sampler
@@ -14,11 +15,14 @@ __all__ = [
     "FAMILIES",
     "Comparison",
     "Entry",
+    "LawReport",
+    "LawRow",
     "Row",
     "Sampler",
     "StateReport",
     "Task",
     "Validation",
+    "check_laws",
     "compare_state",
     "validate",
     "validate_many",

@@ -12,13 +12,15 @@ import numpy as np
 
 from rttrr_pin.arithmetic import Load
 from rttrr_pin.batch import blocks
-from rttrr_pin.certify import bounded_dynamics
+from rttrr_pin.certify import Settlement
 from rttrr_pin.errors import InputError
 from rttrr_pin.model import Drive, LinkWrenches, Wrench
 from rttrr_pin.model.inputs import whole_number
 from rttrr_pin.oracles import Evaluation, Oracle, make_oracle
 from rttrr_pin.robot import Robot
 from rttrr_pin.validate.compare import Comparison, Gap, Row, Worst
+from rttrr_pin.validate.ours import Ours
+from rttrr_pin.validate.settle import settle_state
 from rttrr_pin.validate.states import LAST_STATE, Sampler, States
 
 BLOCK = 1024
@@ -49,6 +51,8 @@ class Validation:
         whole: by quantity, the largest error in eps, in the norm over all links or joints.
         seconds: wall time.
         versions: of what took part.
+        failing: how many states lie outside the gate.
+        settled: who is right, by balls: in the worst failing states, worst first, then in the worst passing one.
     """
 
     robot: str
@@ -64,6 +68,8 @@ class Validation:
     whole: dict[str, Worst]
     seconds: float
     versions: dict[str, str] = field(default_factory=dict)
+    failing: int = 0
+    settled: tuple[Settlement, ...] = ()
 
     @property
     def agrees(self) -> bool:
@@ -92,6 +98,7 @@ class StateReport:
         bound: the bound on our rounding.
         rows: labels of the gaps.
         gaps: how far apart, one for each row.
+        settled: who is right, by balls.
     """
 
     robot: str
@@ -105,11 +112,65 @@ class StateReport:
     bound: LinkWrenches
     rows: tuple[Row, ...]
     gaps: tuple[Gap, ...]
+    settled: Settlement
 
     @property
     def agrees(self) -> bool:
         """Whether every row lies within the gate."""
         return all(bool(gap.share[0] <= 1.0) for gap in self.gaps)
+
+
+@dataclass(frozen=True, slots=True)
+class Contest:
+    """Two programs on the states of a robot.
+
+    Attributes:
+        robot: the robot.
+        sampler: draws the states.
+        ours: our side.
+        oracle: the other.
+        comparison: gathers what is seen.
+    """
+
+    robot: Robot
+    sampler: Sampler
+    ours: Ours
+    oracle: Oracle
+    comparison: Comparison
+
+    @classmethod
+    def of(
+        cls, robot: Robot, seed: int, family: str, payload: Wrench | str | None, oracle: str, states: int
+    ) -> Contest:
+        """Prepare to compare so many states.
+
+        Raises:
+            InputError: an argument cannot be used.
+            OracleError: the oracle is missing, refuses the robot, or built another model than the file describes.
+        """
+        if not isinstance(robot, Robot):
+            raise InputError(f"robot is a {type(robot).__name__}: pass a Robot, such as rttrr_pin.load({robot!r})")
+        if not robot.model.links:
+            raise InputError(f"robot {robot.name!r} has no joint, so that there is nothing to compare")
+        sampler = Sampler(robot.model, family, seed, _payload(robot, payload))
+        other = make_oracle(oracle, robot.model)
+        return cls(robot, sampler, Ours(robot, states), other, Comparison(robot.model, other.quantities))
+
+    def both(self, drawn: States) -> tuple[LinkWrenches, Evaluation, LinkWrenches]:
+        """Ours, the oracle's, and the bound on ours."""
+        with np.errstate(over="ignore", invalid="ignore"):  # what overflows is shown as a failure, with its state
+            ours, bound = self.ours(drawn)
+            _check_size(ours, drawn.first)
+            theirs = self.oracle.evaluate(drawn.q, drawn.v, drawn.a, drawn.loads)
+        return ours, theirs, bound
+
+    def gaps(self, drawn: States) -> list[Gap]:
+        """How far apart the two are, one for each row of the comparison."""
+        return list(self.comparison.gaps(*self.both(drawn)))
+
+    def settled(self, drawn: States) -> Settlement:
+        """Who is right in one state."""
+        return settle_state(self.robot.model, drawn, *self.both(drawn), self.oracle.name)
 
 
 def validate(
@@ -141,12 +202,14 @@ def validate(
     """
     whole_number("states", states, 1, LAST_STATE, "10^15, since none would prove nothing")
     start = time.perf_counter()
-    sampler, other, comparison = _prepare(robot, seed, family, payload, oracle)
+    contest = Contest.of(robot, seed, family, payload, oracle, states)
+    other, comparison = contest.oracle, contest.comparison
     for part in blocks(states, BLOCK):
-        drawn = sampler.draw(part.start, part.stop - part.start)
-        comparison.add(drawn.first, *_both(robot, other, drawn))
+        drawn = contest.sampler.draw(part.start, part.stop - part.start)
+        comparison.add(drawn.first, *contest.both(drawn))
         if progress is not None:
             progress(part.stop)
+    settled = tuple(contest.settled(contest.sampler.draw(state, 1)) for state in comparison.ranking.chosen())
     return Validation(
         robot=robot.name,
         base="floating" if robot.model.floating else "fixed",
@@ -161,6 +224,8 @@ def validate(
         whole=comparison.whole,
         seconds=time.perf_counter() - start,
         versions=versions(other),
+        failing=comparison.ranking.failing,
+        settled=settled,
     )
 
 
@@ -171,17 +236,19 @@ def compare_state(
     family: str = "uniform",
     payload: Wrench | str | None = None,
     oracle: str = "pinocchio",
+    states: int = 10_000,
 ) -> StateReport:
-    """One of the states that `validate` draws for the same seed, family and payload, in full.
+    """One of the states that `validate` draws for the same seed, family, payload and number of states, in full.
 
     Raises:
         InputError: an argument cannot be used.
         OracleError: as in `validate`.
     """
     whole_number("state", index, 0, LAST_STATE, "10^15")
-    sampler, other, comparison = _prepare(robot, seed, family, payload, oracle)
-    drawn = sampler.draw(index, 1)
-    ours, theirs, bound = _both(robot, other, drawn)
+    contest = Contest.of(robot, seed, family, payload, oracle, states)
+    other, comparison = contest.oracle, contest.comparison
+    drawn = contest.sampler.draw(index, 1)
+    ours, theirs, bound = contest.both(drawn)
     gaps = tuple(comparison.gaps(ours, theirs, bound))
     label = f"{other.name} {other.version}"
     rows = tuple(comparison.rows)
@@ -197,6 +264,7 @@ def compare_state(
         bound,
         rows,
         gaps,
+        settle_state(robot.model, drawn, ours, theirs, bound, other.name),
     )
 
 
@@ -209,17 +277,6 @@ def versions(oracle: Oracle) -> dict[str, str]:
         "python": platform.python_version(),
         "machine": platform.machine(),
     }
-
-
-def _prepare(
-    robot: Robot, seed: int, family: str, payload: Wrench | str | None, oracle: str
-) -> tuple[Sampler, Oracle, Comparison]:
-    if not isinstance(robot, Robot):
-        raise InputError(f"robot is a {type(robot).__name__}: pass a Robot, such as rttrr_pin.load({robot!r})")
-    if not robot.model.links:
-        raise InputError(f"robot {robot.name!r} has no joint, so that there is nothing to compare")
-    sampler = Sampler(robot.model, family, seed, _payload(robot, payload))
-    return sampler, make_oracle(oracle, robot.model), Comparison(robot.model)
 
 
 def _payload(robot: Robot, payload: Wrench | str | None) -> Load | str | None:
@@ -242,15 +299,6 @@ def _in_words(payload: Wrench | str | None) -> str:
         f, n = (np.asarray(x, dtype=float).tolist() for x in (payload.force, payload.moment))
         return f"force {f} N, moment {n} N m at {payload.link or 'the tool'}, {axes}"
     return payload or "none"
-
-
-def _both(robot: Robot, oracle: Oracle, drawn: States) -> tuple[LinkWrenches, Evaluation, LinkWrenches]:
-    """Ours, the oracle's, and the bound on ours."""
-    with np.errstate(over="ignore", invalid="ignore"):  # what overflows is shown as a failure, with its state
-        ours, bound = bounded_dynamics(robot.model, drawn.q, drawn.v, drawn.a, drawn.loads)
-        _check_size(ours, drawn.first)
-        theirs = oracle.evaluate(drawn.q, drawn.v, drawn.a, drawn.loads)
-    return ours, theirs, bound
 
 
 def _check_size(ours: LinkWrenches, first: int) -> None:

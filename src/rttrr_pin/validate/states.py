@@ -178,11 +178,19 @@ class Sampler:
     def draw(self, first: int, count: int) -> States:
         """The states first, first + 1, ..., first + count - 1."""
         whole_number("state", first, 0, LAST_STATE, "10^15")
-        nv = self.model.nv
-        counters = -(-(3 * nv + 6) // PER_COUNTER)  # of one state, payload included whether it is used or not
+        counters = -(-self.numbers // PER_COUNTER)
         generator = np.random.Generator(np.random.Philox(key=self.seed, counter=first * counters))
-        unit = generator.random((count, counters * PER_COUNTER))
-        k = first + np.arange(count, dtype=np.int64)
+        return self.made_of(generator.random((count, counters * PER_COUNTER)), first)
+
+    @property
+    def numbers(self) -> int:
+        """How many numbers make a state, payload included whether it is used or not."""
+        return 3 * self.model.nv + 6
+
+    def made_of(self, unit: Array, first: int = 0) -> States:
+        """The states that numbers in [0, 1] stand for, (N, `numbers`) or wider, counted from `first`."""
+        nv = self.model.nv
+        k = first + np.arange(len(unit), dtype=np.int64)
         q, v, a = FAMILIES[self.family](unit[:, : 3 * nv], k, self._ranges)
         return States(first, self._coordinates(q), v, a, self._loads(2 * unit[:, 3 * nv : 3 * nv + 6] - 1))
 

@@ -42,6 +42,7 @@ FORM = {
     Op.SIN: "sin({0})",
     Op.COS: "cos({0})",
     Op.SIGN: "{0} > 0.0 ? 1.0 : {0} < 0.0 ? -1.0 : {0}",
+    Op.ABS: "fabs({0})",
 }
 """Each operation in C; the sign of NaN is NaN."""
 

@@ -186,6 +186,8 @@ class VectorCode:
             name = lines(f"fneg {lines.vector} {self.get(args[0])}")
         elif op is Op.SIGN:
             name = self._sign(self.get(args[0]))
+        elif op is Op.ABS:
+            name = lines(f"call {lines.vector} @llvm.fabs.v{lines.lanes}f64({lines.vector} {self.get(args[0])})")
         else:
             if args[0] not in self.angles:
                 self.angles[args[0]] = self._sincos(self.get(args[0]))

@@ -37,7 +37,14 @@ PITCH = BLOCK + 8
 SEGMENT = 500
 """Operations in one function: few enough for the instruction cache and for compilers whose time grows faster."""
 
-FORM = {Op.ADD: "{} + {}", Op.SUB: "{} - {}", Op.MUL: "{} * {}", Op.NEG: "-{}", Op.SIGN: "sign({})"}
+FORM = {
+    Op.ADD: "{} + {}",
+    Op.SUB: "{} - {}",
+    Op.MUL: "{} * {}",
+    Op.NEG: "-{}",
+    Op.SIGN: "sign({})",
+    Op.ABS: "abs({})",
+}
 """Each operation in Python; sine and cosine are steps of their own."""
 
 PIO2_0, PIO2_1, PIO2_2 = PIO2

@@ -24,6 +24,7 @@ FORM = {
     Op.SIN: "sin({})",
     Op.COS: "cos({})",
     Op.SIGN: "sign({})",
+    Op.ABS: "abs({})",
 }
 """Each operation in Python."""
 

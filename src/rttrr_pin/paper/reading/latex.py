@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from rttrr_pin.paper.grammar import UnreadableError, parse
-from rttrr_pin.paper.layout import Part, layouts
 from rttrr_pin.paper.printed import PrintedComponent, Split
-from rttrr_pin.paper.products import terms_of
-from rttrr_pin.paper.trees import products_of
-from rttrr_pin.paper.vocabulary import Vocabulary
+from rttrr_pin.paper.reading.grammar import UnreadableError, parse
+from rttrr_pin.paper.reading.layout import Part, layouts
+from rttrr_pin.paper.reading.products import terms_of
+from rttrr_pin.paper.reading.trees import products_of
+from rttrr_pin.paper.reading.vocabulary import Vocabulary
 
 
 def read_latex(text: str, vocabulary: Vocabulary, components: int = 1) -> tuple[Split, ...]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping
 
 from rttrr_pin.errors import InputError
-from rttrr_pin.paper.grammar import UnreadableError
-from rttrr_pin.paper.nodes import Atom
-from rttrr_pin.paper.trees import atom_of
+from rttrr_pin.paper.reading.grammar import UnreadableError
+from rttrr_pin.paper.reading.nodes import Atom
+from rttrr_pin.paper.reading.trees import atom_of
 
 COORDINATE = "q_"
 """How the names of coordinates begin; an index from 1 follows."""
@@ -59,7 +59,7 @@ class Vocabulary:
             atom = _atom(spelling)
             if self._names.setdefault(atom, name) != name:
                 raise InputError(
-                    f"{spelling!r} is to be {name!r}, but the same symbol is {self._names[atom]!r} already: "
+                    f"`{spelling}` is to be {name}, but the same symbol is {self._names[atom]} already: "
                     "a symbol has one name; take one of the two out"
                 )
         self.names = frozenset(self._names.values())
@@ -120,6 +120,6 @@ def _atom(spelling: str) -> Atom:
         return atom_of(spelling)
     except UnreadableError as error:
         raise InputError(
-            f"{spelling!r} is no spelling of a symbol: {error.placed(spelling)}; "
-            r"wanted one letter with its scripts and accents, such as '\dot{q}_1'"
+            f"`{spelling}` is no spelling of a symbol: {error.placed(spelling)}; "
+            r"wanted one letter with its scripts and accents, such as `\dot{q}_1`"
         ) from error

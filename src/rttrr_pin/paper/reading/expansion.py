@@ -9,9 +9,9 @@ from fractions import Fraction
 from itertools import product
 from math import prod
 
-from rttrr_pin.paper.ambiguity import MOST, joined
-from rttrr_pin.paper.grammar import UnreadableError
 from rttrr_pin.paper.printed import PrintedTerm, Reading
+from rttrr_pin.paper.reading.ambiguity import MOST, joined
+from rttrr_pin.paper.reading.grammar import UnreadableError
 from rttrr_pin.symbolic.symbols import factors_of
 
 LARGEST = 10_000

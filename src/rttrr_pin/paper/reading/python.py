@@ -11,11 +11,11 @@ from decimal import Decimal
 from fractions import Fraction
 
 from rttrr_pin.errors import InputError
-from rttrr_pin.paper.expansion import Bracket, Terms, expanded
-from rttrr_pin.paper.grammar import UnreadableError
 from rttrr_pin.paper.printed import PrintedComponent, Reading
-from rttrr_pin.paper.products import LARGEST_POWER
-from rttrr_pin.paper.vocabulary import angle_name, index_of, unclashing
+from rttrr_pin.paper.reading.expansion import Bracket, Terms, expanded
+from rttrr_pin.paper.reading.grammar import UnreadableError
+from rttrr_pin.paper.reading.products import LARGEST_POWER
+from rttrr_pin.paper.reading.vocabulary import angle_name, index_of, unclashing
 from rttrr_pin.symbolic.symbols import factors_of
 
 FUNCTIONS = {"cos": "c", "sin": "s"}

@@ -102,3 +102,11 @@ class Product:
     factors: tuple[Factor, ...]
     start: int
     end: int
+
+    @property
+    def enclosed(self) -> tuple[Product, ...]:
+        """The sum in a bracket that stands alone, so that it multiplies nothing; empty where none does."""
+        factor = self.factors[0]
+        alone = len(self.factors) == 1 and not self.signs and not factor.prefix and factor.exponent is None
+        group = factor.body if alone and isinstance(factor.body, Group) else None
+        return group.products if group is not None and not group.divisor else ()

@@ -11,9 +11,9 @@ from dataclasses import replace
 from itertools import pairwise
 from math import prod
 
-from rttrr_pin.paper.grammar import UnreadableError
-from rttrr_pin.paper.nodes import Atom, Factor, Group
-from rttrr_pin.paper.vocabulary import FUNCTIONS, Vocabulary
+from rttrr_pin.paper.reading.grammar import UnreadableError
+from rttrr_pin.paper.reading.nodes import Atom, Factor, Group
+from rttrr_pin.paper.reading.vocabulary import FUNCTIONS, Vocabulary
 
 MOST = 64
 """Readings of one product; more than that are no reading but a riddle."""

@@ -7,8 +7,8 @@ from fractions import Fraction
 
 from lark import Token, Tree
 
-from rttrr_pin.paper.grammar import UnreadableError, end_of, parse, start_of, tokens_of
-from rttrr_pin.paper.nodes import Atom, Factor, Group, Product, braced
+from rttrr_pin.paper.reading.grammar import UnreadableError, end_of, parse, start_of, tokens_of
+from rttrr_pin.paper.reading.nodes import Atom, Factor, Group, Product, braced
 
 Node = Token | Tree[Token]
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 from lark import Token
 
-from rttrr_pin.paper.grammar import UnreadableError, parse, start_of
-from rttrr_pin.paper.nodes import Factor
-from rttrr_pin.paper.trees import products_of
+from rttrr_pin.paper.reading.grammar import UnreadableError, parse, start_of
+from rttrr_pin.paper.reading.nodes import Factor
+from rttrr_pin.paper.reading.trees import products_of
 
 MATRICES = {"matrix", "bmatrix", "pmatrix", "Bmatrix", "smallmatrix", "array"}
 """Environments of which each row is a component, or each cell of the only row."""
@@ -83,7 +83,7 @@ def _without_lines(tokens: Sequence[Token]) -> list[Token]:
         name = token.split("{")[1].split("}")[0].strip() if token.type in ("BEGIN", "END") else None
         if name is not None and name not in MATRICES | LINES:
             known = ", ".join(sorted(MATRICES | LINES))
-            raise UnreadableError(f"the environment {name!r} cannot be read; wanted one of {known}", start_of(token))
+            raise UnreadableError(f"the environment `{name}` cannot be read; wanted one of {known}", start_of(token))
         if name not in LINES:
             kept.append(token)
     return kept

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from functools import cache
 from importlib.resources import files
-from typing import cast
+from typing import Any, cast
 
 from lark import Lark, Token, Tree, UnexpectedToken
 
@@ -18,6 +18,7 @@ WORDS = {
     "a symbol": {"LETTER", "GREEK", "ACCENT", "STYLE", "EMPTY", "FUNCTION"},
     "a number": {"NUMBER"},
     "+ or -": {"SIGN"},
+    "an operator": {"TIMES"},
     "an opening bracket": {"LPAR", "LSQB", "LCURLY"},
     ")": {"RPAR"},
     "]": {"RSQB"},
@@ -46,14 +47,14 @@ class UnreadableError(RttrrError):
         before = text[: self.start]
         line, column = before.count("\n") + 1, self.start - (before.rfind("\n") + 1) + 1
         got = " ".join(text[self.start : self.start + SHOWN].split())
-        here = f"at {got!r}" if got else "at the end"
+        here = f"at `{got}`" if got else "at the end"
         return f"character {self.start + 1} (line {line}, column {column}), {here}: {self.message}"
 
 
 @cache
 def parser() -> Lark:
     """The parser, made once."""
-    grammar = files("rttrr_pin.paper").joinpath("latex.lark").read_text(encoding="utf-8")
+    grammar = files("rttrr_pin.paper.reading").joinpath("latex.lark").read_text(encoding="utf-8")
     starts = ["sum", "layout"]
     return Lark(grammar, parser="lalr", lexer="basic", start=starts, propagate_positions=True, maybe_placeholders=False)
 
@@ -86,20 +87,27 @@ def parse(tokens: Sequence[Token], end: int) -> Tree[Token]:
     if not tokens:
         raise UnreadableError("there is nothing to read here, wanted a sum", end)
     state = parser().parse_interactive("", start="sum")
-    try:
-        for token in tokens:
-            state.feed_token(token)
-        return cast("Tree[Token]", state.feed_token(Token.new_borrow_pos("$END", "", tokens[-1])))
-    except UnexpectedToken as error:
-        raise _explained(error.token, error.accepts or error.expected, end) from error
+    for i, token in enumerate([*tokens, Token.new_borrow_pos("$END", "", tokens[-1])]):
+        try:
+            tree = state.feed_token(token)
+        except UnexpectedToken as error:
+            raise _explained(token, _accepted(tokens[:i]), end) from error
+    return cast("Tree[Token]", tree)
 
 
-def _explained(token: Token, accepted: Iterable[str], end: int) -> UnreadableError:
-    types = set(accepted)
-    wanted = ", ".join(word for word, members in WORDS.items() if members & types) or "something else"
+def _accepted(tokens: Sequence[Token]) -> set[str]:
+    """The types of token that may follow the beginning of a sum."""
+    state: Any = parser().parse_interactive("", start="sum")
+    for token in tokens:
+        state.feed_token(token)
+    return set(state.accepts())
+
+
+def _explained(token: Token, types: set[str], end: int) -> UnreadableError:
+    wanted = ", ".join(word for word, members in WORDS.items() if members & types) or "a script"
     if token.type == "$END":
         return UnreadableError(f"the text ends here, wanted {wanted}; complete it", end)
     if token.type == "OTHER":
-        message = f"{str(token)!r} has no place in a sum of products, wanted {wanted}; write it out or take it out"
+        message = f"`{token}` has no place in a sum of products, wanted {wanted}; write it out or take it out"
         return UnreadableError(message, start_of(token))
-    return UnreadableError(f"got {str(token)!r}, wanted {wanted}; correct the text", start_of(token))
+    return UnreadableError(f"got `{token}`, wanted {wanted}; correct the text", start_of(token))

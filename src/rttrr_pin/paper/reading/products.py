@@ -7,12 +7,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
-from rttrr_pin.paper.ambiguity import Factors, joined, signs, sums_coordinates, takes_argument, ways
-from rttrr_pin.paper.expansion import Bracket, Terms, expanded
-from rttrr_pin.paper.grammar import UnreadableError
-from rttrr_pin.paper.nodes import Atom, Factor, Group, Product
 from rttrr_pin.paper.printed import Reading
-from rttrr_pin.paper.vocabulary import FUNCTIONS, Vocabulary, angle_name
+from rttrr_pin.paper.reading.ambiguity import Factors, joined, signs, sums_coordinates, takes_argument, ways
+from rttrr_pin.paper.reading.expansion import Bracket, Terms, expanded
+from rttrr_pin.paper.reading.grammar import UnreadableError
+from rttrr_pin.paper.reading.nodes import Atom, Factor, Group, Product
+from rttrr_pin.paper.reading.vocabulary import FUNCTIONS, Vocabulary, angle_name
 from rttrr_pin.symbolic.symbols import factors_of
 
 LARGEST_POWER = 400
@@ -34,6 +34,8 @@ def terms_of(products: Sequence[Product], vocabulary: Vocabulary, text: str) -> 
 
 
 def _terms(product: Product, vocabulary: Vocabulary, text: str) -> Terms:
+    if product.enclosed:
+        return terms_of(product.enclosed, vocabulary, text)
     found = [_Literal(vocabulary, text).read(factors, note) for factors, note in ways(product.factors, vocabulary)]
     sign = [Reading(Fraction(value), (), note) for value, note in signs(product.signs)]
     readings = [reading for reading, _ in found]

@@ -12,8 +12,8 @@ from itertools import combinations, pairwise
 
 from lark import Token
 
-from rttrr_pin.paper.grammar import SHOWN, UnreadableError, end_of, start_of, tokens_of
-from rttrr_pin.paper.rows import Row, rows_of
+from rttrr_pin.paper.reading.grammar import SHOWN, UnreadableError, end_of, start_of, tokens_of
+from rttrr_pin.paper.reading.rows import Row, rows_of
 
 MOST = 200
 """Splits of one display."""
@@ -61,9 +61,7 @@ def layouts(text: str, components: int) -> list[Layout]:
     rows, matrix = rows_of(tokens_of(text))
     if not rows:
         raise UnreadableError("there is no equation here", 0)
-    found = [_layout(rows, starts, note) for starts, note in _divisions(text, rows, matrix, components)]
-    sound = [layout for layout in found if not any(part.fault for part in layout.parts)]
-    return sound or found
+    return [_layout(rows, starts, note) for starts, note in _divisions(text, rows, matrix, components)]
 
 
 def _divisions(text: str, rows: Sequence[Row], matrix: bool, components: int) -> list[tuple[tuple[int, ...], str]]:
@@ -101,7 +99,7 @@ def _guessed(text: str, rows: Sequence[Row], certain: Sequence[int], wanted: int
             raise UnreadableError(f"the display can be divided in more than {MOST} ways", start_of(rows[0].tokens[0]))
         starts = tuple(sorted((*certain, *added)))
         places = " and ".join(
-            f"{starts.index(i) + 2} begins with row {i + 1}, {_beginning(text, rows[i])!r}" for i in added
+            f"{starts.index(i) + 2} begins with row {i + 1}, `{_beginning(text, rows[i])}`" for i in added
         )
         note = f"the boundary is not printed: component {places}"
         if any(rows[i - 1].open_end for i in added):
@@ -123,14 +121,8 @@ def _layout(rows: Sequence[Row], starts: Sequence[int], note: str) -> Layout:
         start, end = start_of(lines[0][0]), end_of(lines[-1][-1])
         if stop < len(rows) and rows[stop - 1].open_end:
             lines[-1] = lines[-1][:-1]
-        notes += (
-            []
-            if not starts
-            else [
-                f"the bracket {str(token)!r} of component {len(parts) + 1} has no partner, left out"
-                for token in _unpaired(lines)
-            ]
-        )
+        alone = _unpaired(lines) if starts else []  # around components that are divided, brackets are the vector's
+        notes += [f"the bracket `{token}` of component {len(parts) + 1} has no partner, left out" for token in alone]
         parts.append(_part(lines, start, end))
     return Layout(tuple(parts), "; ".join(notes))
 

@@ -1,0 +1,135 @@
+"""What rounding can have done to each result of a program, compiled beside the results.
+
+Each operation of the program gets a running error bound (Wilkinson; Higham, "Accuracy and Stability of Numerical
+Algorithms", section 3.3), counted in units u = 2^-53. With |x - x_true| <= u b_x and m_x = |x| + u b_x, which is at
+least |x| and at least |x_true|:
+
+    z = fl(x + y):  b_z = b_x + b_y + |z|
+    z = fl(x y):    b_z = m_x b_y + m_y b_x + |z|     (that is |x| b_y + |y| b_x + 2 u b_x b_y + |z|)
+    z = sin x:      b_z = b_x + 2 ulps |z|
+
+Terms of first order are exact; of second order one is counted twice. Inputs are the doubles themselves, without error;
+numbers of the robot bring theirs (`Known`). Changes of sign, and products with powers of two among the robot's numbers,
+are exact.
+
+The bounds are rounded too, and the values that they are computed from may be those of fused operations, which round
+once where these formulas round twice: both change a bound by at most some u for each operation on its way, and are
+covered by one factor (`SLACK`). Underflow is not covered; it needs numbers below 1e-290.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+from rttrr_pin.arithmetic import UNIT_ROUNDOFF
+from rttrr_pin.kernel.expression import Graph, Node, Op
+from rttrr_pin.kernel.known import error_of, is_power_of_two
+from rttrr_pin.kernel.program import Field, Program
+from rttrr_pin.kernel.quantities import BOUND
+
+SLACK = 1.0 + 1e-9
+"""Covers the rounding of the bounds themselves."""
+
+SINE_ULPS = 4
+"""What NumPy states for its vectorised sine and cosine; the other emitters keep within one."""
+
+
+def with_bounds(program: Program, outputs: tuple[Field, ...]) -> Program:
+    """The program with bounds among its outputs.
+
+    Args:
+        program: whose numbers of the robot are `Known`.
+        outputs: names of the program's outputs, and of such with `BOUND` behind.
+
+    Returns:
+        A program with the same operations for the values, whose outputs are these.
+    """
+    bounder = _Bounder(program)
+    places = {}
+    at = 0
+    for output in program.outputs:
+        places[output.name] = range(at, at + output.width)
+        at += output.width
+    results: list[int] = []
+    for output in outputs:
+        plain = output.name.removesuffix(BOUND)
+        nodes = [program.results[place] for place in places[plain]]
+        results += [bounder.bound_of(x) if output.name.endswith(BOUND) else bounder.values[x].number for x in nodes]
+    return Program(bounder.graph, program.inputs, outputs, tuple(results), program.placed_first)
+
+
+@dataclass
+class _Bounder:
+    """Rebuilds a program with a bound beside each node.
+
+    Attributes:
+        program: the program.
+        graph: the new operations.
+        values: the new node of each old one.
+        bounds: a bound on its error, in u.
+    """
+
+    program: Program
+    graph: Graph = field(default_factory=Graph)
+    values: dict[int, Node] = field(default_factory=dict)
+    bounds: dict[int, Node] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        for x in self.program.order:
+            self.values[x], self.bounds[x] = self._visit(x)
+            if x in self.program.graph.kept:
+                self.graph.kept.add(self.values[x].number)
+
+    def bound_of(self, x: int) -> int:
+        """The node of a bound in the unit of its value."""
+        return (self.bounds[x] * (UNIT_ROUNDOFF * SLACK)).number
+
+    def _visit(self, x: int) -> tuple[Node, Node]:
+        old, graph = self.program.graph, self.graph
+        op, args = old.op[x], old.args[x]
+        if op is Op.CONSTANT:
+            value = old.value[x]
+            return self._constant(float(value)), self._constant(error_of(value) / UNIT_ROUNDOFF)
+        if op is Op.INPUT:
+            return Node(graph, graph.input(args[0])), self._constant(0.0)
+        z = Node(graph, graph.apply(op, [self.values[y].number for y in args]))
+        inherited = self._inherited(op, args)
+        if op in (Op.NEG, Op.ABS, Op.SIGN):
+            return z, inherited
+        if op in (Op.SIN, Op.COS):
+            return z, inherited + self._size(z) * (2.0 * SINE_ULPS)
+        return z, inherited if self._is_exact(z, args) else inherited + self._size(z)
+
+    def _inherited(self, op: Op, args: tuple[int, ...]) -> Node:
+        """What the errors of the operands do to the result."""
+        if op is Op.SIGN:
+            return self._constant(0.0)  # of rates, whose sign is that of an exact double
+        if op is not Op.MUL:
+            total = self.bounds[args[0]]
+            return total + self.bounds[args[1]] if len(args) > 1 else total
+        x, y = args
+        return self._most(x) * self.bounds[y] + self._most(y) * self.bounds[x]
+
+    def _most(self, x: int) -> Node:
+        """|x| + u b_x."""
+        return self._size(self.values[x]) + self.bounds[x] * UNIT_ROUNDOFF
+
+    def _size(self, x: Node) -> Node:
+        return x.function(Op.ABS)
+
+    def _is_exact(self, z: Node, args: tuple[int, ...]) -> bool:
+        """Whether nothing was rounded: nothing was computed, or a number was doubled, halved, ..."""
+        graph = self.graph
+        operands = {self.values[y].number for y in args}
+        bare = graph.args[z.number][0] if graph.op[z.number] is Op.NEG else z.number
+        if bare in operands or graph.op[bare] in (Op.CONSTANT, Op.INPUT) or graph.neg(bare) in operands:
+            return True
+        first = graph.args[bare][0]
+        if graph.op[bare] is not Op.MUL or graph.op[first] is not Op.CONSTANT:
+            return False
+        return (graph.args[bare][1] in operands or graph.neg(graph.args[bare][1]) in operands) and is_power_of_two(
+            graph.value[first]
+        )
+
+    def _constant(self, value: float) -> Node:
+        return Node(self.graph, self.graph.constant(value))

@@ -1,0 +1,180 @@
+"""Bounds compiled beside the kernel's results: no true error exceeds them, and they are of the size of rounding."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import rttrr_pin
+from chains import random_chain
+from rttrr_pin import Robot
+from rttrr_pin.kernel import bounds
+from rttrr_pin.kernel.build import build
+from rttrr_pin.kernel.emit import EMITTERS
+from rttrr_pin.kernel.expression import Graph, Op
+from rttrr_pin.kernel.known import Known, error_of
+from rttrr_pin.kernel.simplify import collect
+from rttrr_pin.kernel.trace import KNOWING, TRACING, trace
+from rttrr_pin.validate import Sampler
+from test_rounding import exact_dynamics
+from tolerances import ROUNDING
+from trees import random_tree
+
+FIVE = ("tau", "F", "N", "f", "n")
+BOUNDS = tuple(name + "_bound" for name in FIVE)
+STATES = 12
+
+finite = st.floats(-1e6, 1e6, allow_subnormal=False).filter(lambda x: x == 0.0 or abs(x) > 1e-6)
+errors = st.sampled_from((0.0, 2.0**-53, 1e-9, 0.25))
+
+
+# Numbers that know their error
+
+
+@given(finite, finite, errors, errors, st.floats(-1.0, 1.0), st.floats(-1.0, 1.0), st.sampled_from("+-*"))
+def test_a_known_number_s_error_covers_the_truth(x, y, e, d, at, by, operation) -> None:
+    """Wherever within their errors the operands truly lie."""
+    result = {"+": Known(x, e) + Known(y, d), "-": Known(x, e) - Known(y, d), "*": Known(x, e) * Known(y, d)}[operation]
+    left, right = Fraction(x) + Fraction(e) * Fraction(at), Fraction(y) + Fraction(d) * Fraction(by)
+    truth = {"+": left + right, "-": left - right, "*": left * right}[operation]
+    assert abs(Fraction(float(result)) - truth) <= Fraction(result.error) * Fraction(bounds.SLACK)
+    assert float(result) == {"+": x + y, "-": x - y, "*": x * y}[operation]
+
+
+@given(finite, finite)
+def test_exact_operations_have_no_error(x, y) -> None:
+    assert (Known(x) * 2).error == 0.0 and (0 * Known(x)).error == 0.0 and (Known(x) - x).error == 0.0
+    exact = Fraction(x) + Fraction(y) == Fraction(x + y)
+    assert (Known(x) + y).error == abs(float(Fraction(x) + Fraction(y) - Fraction(x + y))) and exact == (
+        not (x + Known(y)).error
+    )
+
+
+def test_a_known_number_is_a_float_and_others_may_take_it_further() -> None:
+    x = Known(0.5, 0.25)
+    assert isinstance(x, float) and x == 0.5 and abs(-x) == 0.5 and error_of(-x) == 0.25 and error_of(0.5) == 0.0
+    assert error_of(1 - x) == 0.25 and error_of(abs(x)) == 0.25
+    graph = Graph()
+    node = KNOWING.column(rttrr_pin.kernel.expression.Node(graph, graph.input(0)))
+    assert graph.op[(x * node).number] is Op.MUL and graph.op[(x + node).number] is Op.ADD
+
+
+def test_a_zero_with_an_error_is_no_zero() -> None:
+    """An entry 0 of a rounded rotation: its value vanishes, its error stays."""
+    graph = Graph()
+    x = graph.input(0)
+    exact, rounded = graph.constant(0.0), graph.constant(Known(0.0, 1e-15))
+    assert graph.mul(exact, x) == exact
+    assert graph.op[graph.mul(rounded, x)] is Op.MUL and graph.op[graph.add(rounded, x)] is Op.ADD
+    assert graph.op[graph.mul(graph.constant(Known(1.0, 1e-15)), x)] is Op.MUL
+    assert graph.constant(Known(0.0, 1e-15)) == rounded and graph.constant(Known(0.0, 1e-14)) != rounded
+
+
+# The kernel
+
+
+def compiled(robot: Robot, emitter: str | None = None):
+    return robot.compile((*FIVE, *BOUNDS), emitter)
+
+
+def check(robot: Robot, family: str, seed: int, emitter: str | None = None) -> None:
+    """Against 60 digits on the same doubles, component by component."""
+    states = Sampler(robot.model, family, seed, robot.link_names[-1]).draw(0, STATES)
+    payload = [rttrr_pin.Wrench(x.f, x.n, robot.link_names[x.link]) for x in states.loads]
+    result = compiled(robot, emitter)(states.q, states.v, states.a, payload=payload or None)
+    with mpmath.workdps(60):
+        for k in range(STATES):
+            part = slice(k, k + 1)
+            loads = [load.block(part) for load in states.loads]
+            exact = exact_dynamics(robot.model, states.q[part], states.v[part], states.a[part], loads)
+            for key, truth in exact.items():
+                error = np.abs(result[key][k] - truth)
+                assert (error <= result[key + "_bound"][k]).all(), (key, k)
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("base", ["fixed", "floating"])
+def test_no_true_error_exceeds_its_bound_in_trees(seed: int, base: Any) -> None:
+    check(rttrr_pin.load(random_tree(seed, 7), base=base, friction=True), "mixed", seed)
+
+
+@pytest.mark.parametrize("family", ["uniform", "corners", "zeros", "one-joint", "large-velocities"])
+def test_no_true_error_exceeds_its_bound(robot: Robot, family: str) -> None:
+    check(robot, family, 3)
+
+
+@pytest.mark.parametrize("emitter", sorted(EMITTERS))
+def test_every_emitter_computes_bounds(emitter: str) -> None:
+    check(rttrr_pin.load(random_chain(1, ("revolute", "prismatic", "continuous"))), "uniform", 0, emitter)
+
+
+def test_bounds_are_of_the_size_of_rounding(rttrr: Robot) -> None:
+    """A bound that allowed a wrong third digit would be no gate."""
+    states = Sampler(rttrr.model, "uniform", 0).draw(0, 500)
+    result = compiled(rttrr)(states.q, states.v, states.a)
+    for name in FIVE:
+        x, bound = (result[key].reshape(500, -1) for key in (name, name + "_bound"))
+        assert (np.linalg.norm(bound, axis=1) <= ROUNDING * np.linalg.norm(x, axis=1)).all(), name
+        assert bound.max() > 0.0
+
+
+@pytest.mark.parametrize("what", ["rounding", "inherited"])
+def test_a_bound_without_one_of_its_parts_is_exceeded(monkeypatch, what: str) -> None:
+    """The check can fail: leave out the rounding of each operation, or what operands pass on."""
+    if what == "rounding":
+        monkeypatch.setattr(bounds._Bounder, "_is_exact", lambda self, z, args: True)
+    else:
+        monkeypatch.setattr(bounds._Bounder, "_inherited", lambda self, op, args: self._constant(0.0))
+    robot = rttrr_pin.load("rttrr")  # no rotations of the file's, whose error would be bound enough
+    with pytest.raises(AssertionError):
+        check(robot, "uniform", 1, "numpy" if what == "rounding" else "c")
+
+
+def test_values_lie_within_their_bounds_of_the_plain_kernel_s(robot: Robot) -> None:
+    """The same operations; fused differently, so the last bits may differ."""
+    states = Sampler(robot.model, "uniform", 7).draw(0, 100)
+    plain = robot.compile(FIVE)(states.q, states.v, states.a)
+    result = compiled(robot)(states.q, states.v, states.a)
+    for name in FIVE:
+        assert (np.abs(plain[name] - result[name]) <= 2 * result[name + "_bound"]).all(), name
+
+
+def test_the_operations_of_the_values_are_those_of_the_plain_kernel(robot: Robot) -> None:
+    """Bounds come beside the program, and do not change it."""
+    plain, bounded = build(robot.model, FIVE), build(robot.model, (*FIVE, *BOUNDS))
+    values = bounded.results[: sum(field.width for field in plain.outputs)]
+    count = lambda graph, nodes: [
+        [graph.op[x] for x in graph.reachable(nodes)].count(op) for op in (Op.MUL, Op.ADD, Op.SUB)
+    ]
+    mine, theirs = count(bounded.graph, values), count(plain.graph, plain.results)
+    assert mine[0] == theirs[0] and sum(mine[1:]) == sum(theirs[1:])
+
+
+def test_collecting_keeps_errors() -> None:
+    """Sums collected by coefficients whose values are equal and whose errors differ."""
+    model = rttrr_pin.load(random_chain(2, ("revolute", "continuous"))).model
+    for arithmetic in (TRACING, KNOWING):
+        program = collect(trace(model, ("tau", "N"), lumped=False, arithmetic=arithmetic))
+        errors_kept = [error_of(x) for x in program.graph.value.values()]
+        assert bool(max(errors_kept)) == (arithmetic is KNOWING)
+
+
+def test_a_bound_alone_can_be_asked_for(rttrr: Robot) -> None:
+    states = Sampler(rttrr.model, "uniform", 0).draw(0, 5)
+    both = rttrr.compile(("tau", "tau_bound"))(states.q, states.v, states.a)
+    alone = rttrr.compile("tau_bound")(states.q, states.v, states.a)
+    assert alone.shape == (5, 5)
+    np.testing.assert_allclose(alone, both["tau_bound"], rtol=ROUNDING)
+
+
+def test_quantities_that_follow_have_bounds_too(rttrr: Robot) -> None:
+    q = np.random.default_rng(0).uniform(-1, 1, 5)
+    result = rttrr.compile(("mass_matrix", "mass_matrix_bound"))(q)
+    assert result["mass_matrix_bound"].shape == (5, 5)
+    assert (result["mass_matrix_bound"] <= ROUNDING * np.abs(result["mass_matrix"]).max()).all()
