@@ -42,7 +42,7 @@ class ExactGraph(Graph):
 
     def constant(self, value: Any) -> int:
         """A number of the robot, exact."""
-        exact = Fraction(value)
+        exact = value if isinstance(value, Fraction) else Fraction(value)
         number = self._node(Op.CONSTANT, (exact.numerator, exact.denominator))
         self.args[number] = ()
         self.value[number] = exact

@@ -25,7 +25,7 @@ Array = NDArray[np.float64]
 PRECISIONS = (128, 256, 512, 1024, 2048, 4096)
 """Bits of the balls, one after the other. At 64 bits, which take as long, one state in two is not tight."""
 
-STRAIGHT_FROM = 16
+STRAIGHT_FROM = 32
 """States from which recording the operations costs less than it saves."""
 
 OWN, LARGEST = 2.0**-80, 2.0**-200

@@ -97,7 +97,7 @@ class Graph:
         """The input at a place."""
         return self._node(Op.INPUT, (place,))
 
-    def is_constant(self, x: int, value: float | None = None) -> bool:
+    def is_constant(self, x: int, value: Number | None = None) -> bool:
         """Whether a node is a constant, or exactly that constant."""
         return self.op[x] is Op.CONSTANT and (value is None or exactly(self.value[x], value))
 
@@ -111,27 +111,27 @@ class Graph:
         """The sum x + y."""
         if self.op[x] is Op.CONSTANT and self.op[y] is Op.CONSTANT:
             return self.constant(self.value[x] + self.value[y])
-        if self.is_constant(x, 0.0):
+        if self.is_constant(x, 0):
             return y
-        if self.is_constant(y, 0.0):
+        if self.is_constant(y, 0):
             return x
         if self.op[y] is Op.NEG:
             return self.sub(x, self.args[y][0])
         if self.op[x] is Op.NEG:
             return self.sub(y, self.args[x][0])
         if x == y:
-            return self.mul(self.constant(2.0), x)
+            return self.mul(self.constant(2), x)
         return self._node(Op.ADD, (min(x, y), max(x, y)))
 
     def sub(self, x: int, y: int) -> int:
         """The difference x - y."""
         if x == y:
-            return self.constant(0.0)
+            return self.constant(0)
         if self.op[x] is Op.CONSTANT and self.op[y] is Op.CONSTANT:
             return self.constant(self.value[x] - self.value[y])
-        if self.is_constant(x, 0.0):
+        if self.is_constant(x, 0):
             return self.neg(y)
-        if self.is_constant(y, 0.0):
+        if self.is_constant(y, 0):
             return x
         if self.op[y] is Op.NEG:
             return self.add(x, self.args[y][0])
@@ -155,13 +155,13 @@ class Graph:
         """A constant times y."""
         if self.op[y] is Op.CONSTANT:
             return self.constant(factor * self.value[y])
-        if exactly(factor, 0.0):
-            return self.constant(0.0)
-        if factor < 0.0:
+        if exactly(factor, 0):
+            return self.constant(0)
+        if factor < 0:
             return self.neg(self._scaled(-factor, y))
         if self.op[y] is Op.NEG:
             return self.neg(self._scaled(factor, self.args[y][0]))
-        if exactly(factor, 1.0):
+        if exactly(factor, 1):
             return y
         if self.op[y] is Op.MUL and self.op[self.args[y][0]] is Op.CONSTANT:
             return self._scaled(factor * self.value[self.args[y][0]], self.args[y][1])

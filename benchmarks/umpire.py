@@ -1,0 +1,114 @@
+"""The umpire: what a state costs, and how far ours and Pinocchio are off the true values.
+
+Errors are distances to the enclosure in eps of the norm of the true vector (for a torque, of the n or f of its joint),
+over all links; the median and the worst of the states. The truth is that of the file's doubles. Before anything is
+timed, the enclosures of the recorded operations are compared with those of the recursion run directly on balls, and
+no error of ours may exceed its bound, nor one of Pinocchio's its allowance.
+
+    python benchmarks/umpire.py --save
+"""
+
+from __future__ import annotations
+
+import statistics
+import time
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+import rttrr_pin
+from common import arguments, finish
+from rttrr_pin import Robot
+from rttrr_pin.certify import Certificate, bounded_dynamics, certify
+from rttrr_pin.certify.settle import nearest
+from rttrr_pin.certify.umpire import STRAIGHT_FROM
+from rttrr_pin.errors import InputError
+from rttrr_pin.oracles import Evaluation, make_oracle
+from rttrr_pin.validate import Sampler
+from rttrr_pin.validate.compare import Comparison
+from rttrr_pin.validate.states import States
+
+ROBOTS = {"rttrr": "RTTRR", "example:panda": "Panda with fingers", "example:talos_reduced": "Talos reduced"}
+
+TIMED, REPEATS = 500, 5
+
+Array = NDArray[np.float64]
+
+
+def main() -> None:
+    parser = arguments(__doc__.splitlines()[0])
+    parser.add_argument("--states", type=int, default=10_000, help="states whose errors are measured")
+    options = parser.parse_args()
+    figures: dict[str, Any] = {"states": options.states, "robots": {}}
+    for source, name in ROBOTS.items():
+        try:
+            robot = rttrr_pin.load(source)
+        except InputError as error:
+            print(f"{name} is left out: {error}")
+            continue
+        figures["robots"][name] = {"errors_eps": errors(robot, options.states), "ms_a_state": cost(robot)}
+    finish("umpire", figures, options.save)
+
+
+def errors(robot: Robot, count: int) -> dict[str, Any]:
+    """Median and worst of each program, by quantity; of a state the largest over all links or joints."""
+    drawn = Sampler(robot.model, payload=robot.link_names[-1]).draw(0, count)
+    arrays = (drawn.q, drawn.v, drawn.a, drawn.loads)
+    certificate = certify(robot.model, *arrays, "read")
+    ours, bound = bounded_dynamics(robot.model, *arrays)
+    theirs = make_oracle("pinocchio", robot.model).evaluate(*arrays)
+    out: dict[str, Any] = {"bits": {str(bits): int((certificate.bits == bits).sum()) for bits in set(certificate.bits)}}
+    for program, computed in (("ours", ours), ("pinocchio", theirs.wrenches)):
+        comparison = Comparison(robot.model)
+        gaps = comparison.gaps(computed, Evaluation(nearest(certificate, computed), theirs.rounding), bound)
+        by_quantity: dict[str, list[Array]] = {}
+        for row, gap in zip(comparison.rows, gaps, strict=True):
+            allowed = gap.own if program == "ours" else gap.allowance
+            if (gap.difference > allowed).any():
+                raise SystemExit(f"{program} is beyond its half of the gate in {row.quantity} at {row.at}")
+            by_quantity.setdefault(row.quantity, []).append(gap.relative)
+        out[program] = {quantity: _figures(np.max(columns, axis=0)) for quantity, columns in by_quantity.items()}
+    return out
+
+
+def _figures(eps: Array) -> dict[str, float]:
+    return {"median": round(float(np.median(eps)), 2), "worst": round(float(eps.max()), 1)}
+
+
+def cost(robot: Robot) -> dict[str, float]:
+    """Of one state: in a batch, one at a time, and what recording the operations takes once."""
+    drawn = Sampler(robot.model).draw(0, TIMED)
+    few = Sampler(robot.model).draw(0, STRAIGHT_FROM - 1)
+    start = time.perf_counter()
+    batch = _certified(robot, drawn)
+    first = time.perf_counter() - start
+    alone = _certified(robot, few)
+    for key, ends in alone.items():
+        same = getattr(batch, key)[: len(few.q)]
+        if not ((ends.lower <= same.upper) & (same.lower <= ends.upper)).all():
+            raise SystemExit(f"enclosures of {key} have nothing in common")
+    each = _median(lambda: _certified(robot, drawn)) / TIMED
+    return {
+        "batch": round(1e3 * each, 3),
+        "directly": round(1e3 * _median(lambda: _certified(robot, few)) / len(few.q), 3),
+        "recording_once": round(1e3 * (first - each * TIMED), 1),
+    }
+
+
+def _certified(robot: Robot, drawn: States) -> Certificate:
+    return certify(robot.model, drawn.q, drawn.v, drawn.a)
+
+
+def _median(work: Callable[[], object]) -> float:
+    seconds = []
+    for _ in range(REPEATS):
+        start = time.perf_counter()
+        work()
+        seconds.append(time.perf_counter() - start)
+    return statistics.median(seconds)
+
+
+if __name__ == "__main__":
+    main()
