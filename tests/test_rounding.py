@@ -12,7 +12,7 @@ import pytest
 import rttrr_pin
 from chains import random_chain
 from rttrr_pin import Robot
-from rttrr_pin.arithmetic import UNIT_ROUNDOFF, Load, bodies, evaluate
+from rttrr_pin.arithmetic import UNIT_ROUNDOFF, Load, bodies, dynamics, evaluate
 from rttrr_pin.certify import BOUNDED, Bounded, bounded_dynamics
 from rttrr_pin.model import Model
 from rttrr_pin.validate import FAMILIES, Sampler
@@ -156,3 +156,22 @@ def test_a_chain_of_followers_is_rounded_once_and_bounded() -> None:
         (mimic.offset, Fraction(0.1) * Fraction(0.3)),
     ):
         assert abs(Fraction(rounded) - exact) <= Fraction(UNIT_ROUNDOFF) * abs(exact)
+
+
+def test_a_quaternion_that_is_not_quite_of_unit_length_is_within_the_bound() -> None:
+    """What is bounded is the distance from the motion of the unit quaternion; inputs may be off by 5e-13."""
+    robot = rttrr_pin.load("rttrr", base="floating")
+    states = Sampler(robot.model, seed=3).draw(0, 4)
+    q = states.q.copy()
+    q[:, 3:7] *= 1 + 4e-13
+    values, bounds = bounded_dynamics(robot.model, q, states.v, states.a)
+    with mpmath.workdps(60):
+        for k in range(4):
+            unit = [mpmath.mpf(float(x)) for x in q[k]]
+            length = mpmath.sqrt(sum(x * x for x in unit[3:7]))
+            unit[3:7] = [x / length for x in unit[3:7]]
+            v, a = ([mpmath.mpf(float(x)) for x in y[k]] for y in (states.v, states.a))
+            truth = dynamics(robot.model, mp_arithmetic(), unit, v, a).tau
+            error = np.abs(values.tau[k] - np.array(truth, dtype=object))
+            assert (error <= bounds.tau[k]).all()
+            assert error.max() > ROUNDING  # which the rounding of exact coordinates would not explain

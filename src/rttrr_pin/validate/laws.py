@@ -20,6 +20,7 @@ from rttrr_pin.model import Wrench
 from rttrr_pin.model.inputs import whole_number
 from rttrr_pin.robot import Robot
 from rttrr_pin.validate.compare import Worst
+from rttrr_pin.validate.run import in_words
 from rttrr_pin.validate.states import LAST_STATE, Sampler, States
 
 Array = NDArray[np.float64]
@@ -138,7 +139,7 @@ def check_laws(
         n_states=states,
         family=family,
         seed=seed,
-        payload="random" if payload is None else "as given",
+        payload=in_words(payload or "random"),
         rows=rows,
         seconds=time.perf_counter() - start,
     )

@@ -219,7 +219,7 @@ def validate(
         n_states=states,
         family=family,
         seed=seed,
-        payload=_in_words(payload),
+        payload=in_words(payload),
         rows=tuple(comparison.rows),
         whole=comparison.whole,
         seconds=time.perf_counter() - start,
@@ -293,7 +293,8 @@ def _payload(robot: Robot, payload: Wrench | str | None) -> Load | str | None:
     return load
 
 
-def _in_words(payload: Wrench | str | None) -> str:
+def in_words(payload: Wrench | str | None) -> str:
+    """A payload as reports name it."""
     if isinstance(payload, Wrench):
         axes = "base axes" if payload.expressed_in == "base" else "link axes"
         f, n = (np.asarray(x, dtype=float).tolist() for x in (payload.force, payload.moment))
