@@ -17,13 +17,13 @@ def audit() -> list[str]:
         f"{paper['components']} components with {paper['printed_terms']:,} printed terms, "
         f"**{verdicts.get('match', 0)} match, {verdicts.get('differs', 0)} differ, {verdicts.get('unparsed', 0)} are "
         f"unparsed**; {paper['findings']} findings: {told}. {paper['dimension_wrong']} of them have the wrong "
-        "dimension, which needs no derivation. Every corrected equation is symbolically equal to the derivation and lies "
-        f"in the same ball. {seconds['audit']:.1f} s; all moments n_i, derived and written, in "
+        "dimension, which needs no derivation. Every corrected equation is symbolically equal to the derivation and "
+        f"lies in the same ball. {seconds['audit']:.1f} s; all moments n_i, derived and written, in "
         f"{seconds['derive']:.1f} s.",
         "",
-        f"Planted misprints: {misprints['slips']:,} slips in {misprints['copies_with_slips']:,} copies, one to three in "
-        f"each; {found:,} copies found, {100 * misprints['named_with_kind_and_term']:.1f} % of the slips named with kind "
-        f"and term; {len(misprints['clean_components_reported'])} findings in "
+        f"Planted misprints: {misprints['slips']:,} slips in {misprints['copies_with_slips']:,} copies, one to three "
+        f"in each; {found:,} copies found, {100 * misprints['named_with_kind_and_term']:.1f} % of the slips named with "
+        f"kind and term; {len(misprints['clean_components_reported'])} findings in "
         f"{misprints['clean_copies_of_60_components']} clean copies of all 60.",
     ]
 
