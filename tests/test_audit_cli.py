@@ -134,7 +134,7 @@ WRONG = {
     "joint is no number": ("joint = 1", "joint = true", "expected 1 to 2"),
     "twice": ('name = "g"\n', 'name = "m_1"\n', "'m_1' is declared twice"),
     "spelling twice": ("latex = 'g'", "latex = 'l_1'", "spell them differently"),
-    "spelling twice in other braces": ("latex = 'g'", "latex = 'l_{1}'", "the same symbol is 'l_1' already"),
+    "spelling twice in other braces": ("latex = 'g'", "latex = 'l_{1}'", "the same symbol is l_1 already"),
     "spelling of no symbol": ("latex = 'g'", "latex = 'g +'", "is no spelling of a symbol"),
     "spelling without a number": (r"position = '\theta_<k>'", r"position = '\theta'", "spell them differently"),
     "name of a sine": ('name = "g"', 'name = "s_1"', "stands for a coordinate"),

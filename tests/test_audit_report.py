@@ -333,9 +333,10 @@ def test_what_cannot_be_set_is_code(tex: str) -> None:
 
 
 def test_prose_sets_formulas_and_names_apart() -> None:
-    line = prose(r"read as {}^5r_{C_{5x}}, the 5 before it; J_xy of {5}, '- \right]' is link's")
+    line = prose(r"read as `{}^5r_{C_{5x}}`, the 5 before it; J_xy of {5}, `- \right]` is link's")
     assert [type(part) for part in line] == [Words, Formula, Words, Code, Words, Code, Words]
     assert line[1] == Formula("{}^5r_{C_{5x}}") and line[3] == Code("J_xy") and line[5] == Code(r"- \right]")
+    assert prose(r"so \dot{q}_1, x") == (Words("so "), Formula(r"\dot{q}_1"), Words(", x"))
     assert (
         "".join(part.text for part in line if isinstance(part, Words))
         == "read as , the 5 before it;  of {5},  is link's"

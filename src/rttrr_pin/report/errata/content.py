@@ -37,8 +37,8 @@ from rttrr_pin.report.errata.sheet import (
 )
 from rttrr_pin.report.errata.typeset import settable
 
-WORD = re.compile(r"'[^']*'|\s+|[^\s']+|'")
-"""A quotation, blanks, or a word."""
+WORD = re.compile(r"'[^']*'|`[^`]*`|\s+|[^\s'`]+|'|`")
+"""A quotation, blanks, or a word; messages put what is printed between backquotes."""
 
 FINDING_WIDTHS = (0.09, 0.13, 0.33, 0.33, 0.12)
 """Id, kind, printed, should be, dimension."""
@@ -205,7 +205,7 @@ def prose(text: str) -> Line:
     """Words with the formulas and names in them set apart."""
     pieces: list[Piece] = []
     for word in WORD.findall(text):
-        quoted = len(word) > 1 and word[0] == word[-1] == "'"
+        quoted = len(word) > 1 and word[0] == word[-1] and word[0] in "'`"
         body = word[1:-1] if quoted else word.rstrip(",;.:)")
         kind = _kind(body, quoted)
         if isinstance(kind, Words):
@@ -218,7 +218,7 @@ def prose(text: str) -> Line:
 
 def _kind(text: str, quoted: bool) -> Piece:
     if re.search(r"\\|\{\}|[_^]\{", text):
-        return Formula(text) if not quoted and settable(text) else Code(text)
+        return Formula(text) if settable(text) else Code(text)
     return Code(text) if quoted or re.search(r"\w[_^]\w", text) else Words(text)
 
 
