@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import re
-import shutil
 import subprocess
 from dataclasses import replace
 from html.parser import HTMLParser
@@ -267,7 +266,7 @@ def test_the_latex_is_balanced(of_the_paper: Audit) -> None:
     assert_balanced(errata(of_the_paper, "latex"))
 
 
-@pytest.mark.skipif(shutil.which("pdflatex") is None, reason="no TeX on this machine")
+@pytest.mark.tex
 @pytest.mark.parametrize("case", ["paper", "nasty", "long"])
 def test_the_latex_compiles(of_the_paper: Audit, textbook: Publication, case: str, tmp_path: Path) -> None:
     made = component(finding(printed=NASTY, derived=NASTY, note=NASTY), corrected=((NASTY, True),))
