@@ -110,7 +110,8 @@ def _guessed(text: str, rows: Sequence[Row], certain: Sequence[int], wanted: int
 
 def _beginning(text: str, row: Row) -> str:
     start = start_of(row.tokens[0])
-    return " ".join(text[start : start + SHOWN].split())
+    words = text[start : start + SHOWN].split(" ")
+    return " ".join(" ".join(words[:-1] if len(words) > 1 else words).split())  # the last may be cut in two
 
 
 def _layout(rows: Sequence[Row], starts: Sequence[int], note: str) -> Layout:
