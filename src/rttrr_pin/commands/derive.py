@@ -19,10 +19,10 @@ NEXT = "to write them, add --latex FILE, --markdown FILE, --python FILE or --c F
 ALMOST = "some rotations are almost right angles, which makes many small terms: add --right-angles to read them as such"
 
 PREFACES = {
-    "rttrr": "The arm of Detesan, The dynamic model of RTTRR serial robot - Iterations outwards and inwards the robot's "
-    "mechanical structure, Acta Technica Napocensis: the moments n_i, which the paper leaves to a link that no longer "
-    "answers, and what comes next. docs/rttrr_model.md of rttrr-pin is what `rttrr-pin derive --markdown FILE` writes; "
-    "the tests write it anew, and hold every formula in it against Pinocchio."
+    "rttrr": "The arm of Detesan, The dynamic model of RTTRR serial robot - Iterations outwards and inwards the "
+    "robot's mechanical structure, Acta Technica Napocensis: the moments n_i, which the paper leaves to a link that no "
+    "longer answers, and what comes next. docs/rttrr_model.md of rttrr-pin is what `rttrr-pin derive --markdown FILE` "
+    "writes; the tests write it anew, and hold every formula in it against Pinocchio."
 }
 """What stands before the model of a bundled robot."""
 
