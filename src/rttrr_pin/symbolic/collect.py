@@ -208,8 +208,9 @@ def _with_squares(terms: Terms, cosine: str, sine: str) -> Terms:
 
 def _divided(factors: Factors, by: Factors) -> Factors:
     """A product of symbols divided by another."""
-    exponents = Counter(dict(factors))
-    exponents.subtract(dict(by))
+    exponents = dict(factors)
+    for name, power in by:
+        exponents[name] = exponents.get(name, 0) - power
     return tuple(sorted((name, power) for name, power in exponents.items() if power))
 
 
