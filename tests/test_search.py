@@ -97,3 +97,40 @@ def test_a_state_in_full_has_the_numbers_of_the_run(rttrr: Robot) -> None:
     state = compare_state(rttrr, worst.share.state, seed=3, states=KERNEL_FROM)
     row = [(r.quantity, r.at) for r in state.rows].index((worst.quantity, worst.at))
     assert float(state.gaps[row].share[0]) == worst.share.value
+
+
+# The command
+
+
+def test_the_command_shows_what_was_found(capsys, tmp_path) -> None:
+    import json
+
+    from rttrr_pin.cli import main
+
+    target = tmp_path / "out.json"
+    assert main(["validate", "--states", "50", "--search", "600", "--seed", "2", "--json", str(target)]) == 0
+    assert "states searched, seed 2" in capsys.readouterr().out
+    data = json.loads(target.read_text())["search"]
+    assert data["evaluations"] >= 512 and data["share"] >= data["share_of_random_states"] and len(data["q"]) == 5
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--search", "3"], "from 512"),
+        (["--search", "600", "--state", "3"], "--state names one"),
+    ],
+)
+def test_a_search_that_makes_no_sense_is_an_error(capsys, words, told) -> None:
+    from rttrr_pin.cli import main
+
+    assert main(["validate", "--states", "50", *words]) == 2
+    assert told in capsys.readouterr().err
+
+
+def test_a_state_is_printed_with_the_numbers_of_its_run(capsys) -> None:
+    """The command that is offered names the number of states where it is not the usual one."""
+    from rttrr_pin.cli import main
+
+    assert main(["validate", "--states", "60"]) == 0
+    assert "--states 60 --state" in capsys.readouterr().out

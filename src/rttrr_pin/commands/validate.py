@@ -17,6 +17,10 @@ MOST_LAW_STATES = 1000
 """Laws cost far more than the comparison, and a law that fails does so in nearly every state."""
 
 
+STATES = 10_000
+"""Compared unless another number is asked for."""
+
+
 def validate(
     robot: Annotated[
         str,
@@ -24,7 +28,7 @@ def validate(
             help="A bundled robot's name, the path of a URDF, or example:NAME; several at once: a folder, example:all."
         ),
     ] = "rttrr",
-    states: Annotated[int, typer.Option(help="How many states to compare.")] = 10_000,
+    states: Annotated[int, typer.Option(help="How many states to compare.")] = STATES,
     seed: Annotated[int, typer.Option(help="The same seed gives the same states.")] = 0,
     family: Annotated[
         str,
@@ -54,6 +58,9 @@ def validate(
         bool, typer.Option("--laws", help="Also try the laws of mechanics, which need no other program.")
     ] = False,
     state: Annotated[int | None, typer.Option(help="Print this one state in full, ours beside the oracle's.")] = None,
+    search: Annotated[
+        int | None, typer.Option(help="Look for the worst state, at about so many; 20000 is a start.")
+    ] = None,
     json: Annotated[str | None, typer.Option(help="Write the outcome as JSON to this file; '-' is stdout.")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
     full: Annotated[bool, typer.Option("--full", help="Show every row of a long table.")] = False,
@@ -64,6 +71,7 @@ def validate(
     in their file stops them.
 
     With --laws, also power balance, momentum, symmetry, linearity, invariance and the like, on the first 1,000 states.
+    With --search, an optimiser looks for the state at which the two differ most.
 
     Exit code: 0 agree, 1 disagree or a law violated, 2 unusable input (of several robots, at least one).
     """
@@ -84,6 +92,7 @@ def validate(
             "--friction": friction,
             "--full": full,
             "--laws": laws,
+            "--search": search is not None,
         }
         _refuse([option for option, given in one_robot.items() if given])
         return _validate_several(several, validation.Task(states, seed, family, oracle), json, quiet)
@@ -99,19 +108,23 @@ def validate(
     }
     console = Output(quiet=quiet or json == "-", soft_wrap=False)
     if state is not None:
-        if laws:
-            raise InputError("--laws tries many states, and --state names one: leave one of them out")
-        one = validation.compare_state(loaded, state, **chosen)
+        for option, given in (("--laws", laws), ("--search", search is not None)):
+            if given:
+                raise InputError(f"{option} tries many states, and --state names one: leave one of them out")
+        one = validation.compare_state(loaded, state, **chosen, states=states)
         write_json(json, lambda: report.state_data(one))
         report.show_state(one, console)
         return AGREE if one.agrees else DISAGREE
     with progress(states, quiet) as advance:
         result = validation.validate(loaded, states, **chosen, progress=advance)
     tried = _laws(loaded, min(states, MOST_LAW_STATES), chosen, quiet) if laws else None
-    write_json(
-        json, lambda: report.validation_data(result) | ({} if tried is None else {"laws": report.laws_data(tried)})
+    found = _search(loaded, search, chosen, quiet)
+    extra = ({} if tried is None else {"laws": report.laws_data(tried)}) | (
+        {} if found is None else {"search": report.search_data(found)}
     )
+    write_json(json, lambda: report.validation_data(result) | extra)
     again = {
+        "--states": states if states != STATES else None,
         "--seed": seed or None,
         "--family": family if family != "uniform" else None,
         "--payload": payload,
@@ -124,7 +137,20 @@ def validate(
     report.show_validation(result, console, _rerun(robot, again, friction), full)
     if tried is not None:
         report.show_laws(tried, console)
-    return AGREE if result.agrees and (tried is None or tried.holds) else DISAGREE
+    if found is not None:
+        report.show_search(found, console)
+    right = (result.agrees, tried is None or tried.holds, found is None or found.agrees)
+    return AGREE if all(right) else DISAGREE
+
+
+def _search(robot: Any, evaluations: int | None, chosen: Mapping[str, Any], quiet: bool) -> Any:
+    """The worst case, looked for; None where it was not asked for."""
+    if evaluations is None:
+        return None
+    from rttrr_pin.validate.search import search
+
+    with progress(evaluations, quiet) as advance:
+        return search(robot, evaluations, chosen["seed"], chosen["payload"], chosen["oracle"], advance)
 
 
 def _laws(robot: Any, states: int, chosen: Mapping[str, Any], quiet: bool) -> Any:

@@ -8,6 +8,7 @@ from rttrr_pin.report.errata import errata
 from rttrr_pin.report.inspection import inspection_data, repair_data, show_inspection, show_repair
 from rttrr_pin.report.laws import laws_data, show_laws
 from rttrr_pin.report.many import many_data, show_many
+from rttrr_pin.report.search import search_data, show_search
 from rttrr_pin.report.text import show_state, show_validation
 
 __all__ = [
@@ -18,12 +19,14 @@ __all__ = [
     "laws_data",
     "many_data",
     "repair_data",
+    "search_data",
     "show_audit",
     "show_equations",
     "show_inspection",
     "show_laws",
     "show_many",
     "show_repair",
+    "show_search",
     "show_state",
     "show_validation",
     "state_data",
