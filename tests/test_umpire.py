@@ -161,7 +161,7 @@ def test_a_ball_is_rounded_outwards(value: Fraction, bits: int, width: Fraction)
         return
     with precision(bits):
         x = ball(value) + arb(0, float(width))
-    low, high = enclose(x)
+        low, high = enclose(x)
     assert Fraction(low) <= value <= Fraction(high)
     assert x >= low and x <= high  # of all that the ball holds
 
@@ -172,14 +172,14 @@ def test_a_double_is_its_own_enclosure(value: float) -> None:
 
 
 def test_precision_rises_where_terms_cancel() -> None:
-    """1e40 N in link axes against 1e40 N in base axes, over two joints that turn back: the sum is the weight."""
+    """1e36 N in link axes against 1e36 N in base axes, over two joints that turn back: the sum is the weight."""
     robot = rttrr_pin.load(
         '<robot name="x"><link name="o"/><link name="a"/><link name="b"><inertial><mass value="2"/>'
         '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>'
         '<joint name="i" type="revolute"><parent link="o"/><child link="a"/><axis xyz="0 1 0"/></joint>'
         '<joint name="j" type="revolute"><parent link="a"/><child link="b"/><axis xyz="0 -1 0"/></joint></robot>'
     )
-    huge = 1e40
+    huge = 1e36
     loads = [Wrench((0, 0, huge), link="b"), Wrench((0, 0, -huge), link="b", expressed_in="base")]
     easy = robot.certify((0.7, 0.7), (0, 0), (0, 0))
     hard = robot.certify((0.7, 0.7), (0, 0), (0, 0), loads)
