@@ -236,6 +236,13 @@ def test_lines_fit_the_page_and_braces_balance(case: tuple[str, str, str]) -> No
         assert side.count("(") == side.count(")")
 
 
+def test_a_robot_without_symbols_has_no_table_of_them() -> None:
+    """TeX takes no table without rows."""
+    still = symbolic.derive(rttrr_pin.load(EXAMPLES["no-joint"]), ["N", "M"], letters=symbolic.Letters())
+    assert r"\begin{longtable}" not in WRITERS["latex"](still)
+    assert r"\begin{longtable}" in written(CASES[0], "latex")
+
+
 def test_blocks_of_markdown_are_short_enough_to_render() -> None:
     """Browsers' renderers take some thousand characters; a line that began with + or - would be a list to Markdown."""
     for block in written(CASES[0], "markdown").split("$$\n")[1::2]:

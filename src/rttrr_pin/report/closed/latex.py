@@ -36,8 +36,9 @@ def latex(derivation: Derivation, preface: str = "") -> str:
     model = derivation.robot.model
     parts = [HEAD + r"\begin{document}", rf"\section*{{Dynamic model of {_escaped(words.plain(model.name))}}}"]
     parts += [_escaped(text) for text in (*([preface] if preface else []), *words.conventions(derivation))]
-    parts += [_escaped(f"Links and joints: {words.names_of_links(model)}."), r"\section*{Symbols}"]
-    parts.append("\n".join(_table(glossary(derivation))))
+    parts.append(_escaped(f"Links and joints: {words.names_of_links(model)}."))
+    if entries := glossary(derivation):  # a longtable without rows does not compile
+        parts += [r"\section*{Symbols}", "\n".join(_table(entries))]
     if derivation.steps:
         parts += [rf"\section*{{{words.STEPS}}}", *_blocks(mathematics.steps(derivation))]
     for name in derivation.quantities:
