@@ -15,9 +15,7 @@ TOLERANCE = 64 * EPS
 """Relative; merging inertias over fixed joints and turning them by rpy rounds a few times."""
 
 
-def differs(
-    what: str, ours: ArrayLike, theirs: ArrayLike, scale: float = 0.0, tolerance: float = TOLERANCE
-) -> Iterator[str]:
+def differs(what: str, ours: ArrayLike, theirs: ArrayLike, scale: float = 0.0) -> Iterator[str]:
     """A line, if two numbers or arrays are apart by more than rounding.
 
     Args:
@@ -25,11 +23,10 @@ def differs(
         ours: what the file says.
         theirs: what the oracle has.
         scale: of what was rounded on the way, where that is larger than the numbers themselves.
-        tolerance: relative to the norm of ours or to `scale`.
     """
     x, y = np.asarray(ours, dtype=float), np.asarray(theirs, dtype=float)
     size = max(float(np.linalg.norm(x)), scale)
-    if x.shape != y.shape or not np.linalg.norm(x - y) <= tolerance * size:
+    if x.shape != y.shape or not np.linalg.norm(x - y) <= TOLERANCE * size:
         yield f"{what}: {_short(y)}, the file says {_short(x)}"
 
 
