@@ -21,9 +21,13 @@ Array = NDArray[np.float64]
 
 ORACLES = {
     "pinocchio": "rttrr_pin.oracles.pinocchio:PinocchioOracle",
+    "mujoco": "rttrr_pin.oracles.mujoco:MujocoOracle",
     "lagrange": "rttrr_pin.oracles.lagrange:LagrangeOracle",
 }
 """Where the oracle of each name is."""
+
+EXTRAS = ("mujoco",)
+"""Oracles whose library comes with an extra of the same name."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +85,8 @@ def make_oracle(name: str, model: Model) -> Oracle:
         oracle = getattr(import_module(module), kind)
     except ImportError as error:
         raise OracleError(
-            f"oracle {name!r} needs the package {error.name!r}, which is not installed: install it"
+            f"oracle {name!r} needs the package {error.name!r}, which is not installed: "
+            + (f"pip install 'rttrr-pin[{name}]'" if name in EXTRAS else "install it")
         ) from error
     made: Oracle = oracle(model)
     return made

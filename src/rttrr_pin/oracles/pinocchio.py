@@ -27,7 +27,8 @@ from rttrr_pin.errors import ModelMismatchError, OracleError
 from rttrr_pin.model import QUANTITIES, LinkWrenches, Model
 from rttrr_pin.model.tree import ROOT_JOINT, UNIVERSE
 from rttrr_pin.oracles import Evaluation
-from rttrr_pin.oracles.pinocchio_joints import Motion, driving_forces, expand, pin_joints, reach, reduce_forces
+from rttrr_pin.oracles.joints import reduce_forces
+from rttrr_pin.oracles.pinocchio_joints import Motion, driving_forces, expand, pin_joints, reach
 from rttrr_pin.oracles.pinocchio_model import differences, pin_links, product
 from rttrr_pin.oracles.pinocchio_rounding import OPERATIONS, rounding
 

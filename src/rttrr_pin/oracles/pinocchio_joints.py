@@ -20,34 +20,21 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.model import Drive, JointType, Mimic, Model
+from rttrr_pin.model import JointType, Model
+from rttrr_pin.oracles.joints import OracleJoint, friction, own_slices
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class PinJoint:
+class PinJoint(OracleJoint):
     """A moving joint of ours, where Pinocchio has it.
 
     Attributes:
-        type: how it moves.
         id: Pinocchio's number of it.
-        q: where its coordinates are in Pinocchio's q.
-        v: where its rates are in Pinocchio's v, a, tau.
-        own_q: where its coordinates are in our q; of a follower those of the joint it follows.
-        own_v: where its rates are in our v, a, tau; likewise.
-        mimic: whom it follows.
-        drive: what it adds to its driving force.
     """
 
-    type: JointType
     id: int
-    q: slice
-    v: slice
-    own_q: slice
-    own_v: slice
-    mimic: Mimic | None
-    drive: Drive
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,20 +48,13 @@ class Motion:
 
 def pin_joints(model: Model, pin_model: Any) -> list[PinJoint]:
     """The moving joints, in our order."""
-    own: dict[int, tuple[slice, slice]] = {}
-    at_q = at_v = 0
-    for i in model.independent:
-        joint = model.joints[i]
-        own[i] = slice(at_q, at_q + joint.nq), slice(at_v, at_v + joint.nv)
-        at_q, at_v = at_q + joint.nq, at_v + joint.nv
     found = []
-    for i, joint in enumerate(model.joints):
+    for joint, (own_q, own_v) in zip(model.joints, own_slices(model), strict=True):
         if joint.nv:
             number = pin_model.getJointId(joint.name)
             theirs = pin_model.joints[number]
             q, v = slice(theirs.idx_q, theirs.idx_q + theirs.nq), slice(theirs.idx_v, theirs.idx_v + theirs.nv)
-            own_q, own_v = own[joint.mimic.joint if joint.mimic else i]
-            found.append(PinJoint(joint.type, number, q, v, own_q, own_v, joint.mimic, joint.drive))
+            found.append(PinJoint(joint.type, q, v, own_q, own_v, joint.mimic, joint.drive, number))
     return found
 
 
@@ -83,10 +63,7 @@ def expand(joints: Sequence[PinJoint], pin_model: Any, q: Array, v: Array, a: Ar
     rows = len(q)
     motion = Motion(np.empty((rows, pin_model.nq)), np.empty((rows, pin_model.nv)), np.empty((rows, pin_model.nv)))
     for joint in joints:
-        q_, v_, a_ = q[:, joint.own_q], v[:, joint.own_v], a[:, joint.own_v]
-        if joint.mimic is not None:
-            m = joint.mimic.multiplier
-            q_, v_, a_ = m * q_ + joint.mimic.offset, m * v_, m * a_
+        q_, v_, a_ = joint.own(q, v, a)
         if joint.type in (JointType.CONTINUOUS, JointType.PLANAR):
             angle = q_[:, -1:]
             q_ = np.hstack([q_[:, :-1], np.cos(angle), np.sin(angle)])
@@ -100,20 +77,10 @@ def driving_forces(joints: Sequence[PinJoint], tau: Array, motion: Motion) -> tu
     total = tau.copy()
     for joint in joints:
         v, a = motion.v[:, joint.v], motion.a[:, joint.v]
-        friction = joint.drive.damping * v + joint.drive.friction * np.sign(v)
-        own[:, joint.v] = joint.drive.armature * a + friction
-        total[:, joint.v] += friction
+        resisting = friction(joint.drive, v)
+        own[:, joint.v] = joint.drive.armature * a + resisting
+        total[:, joint.v] += resisting
     return total, own
-
-
-def reduce_forces(joints: Sequence[PinJoint], forces: Array) -> Array:
-    """Forces of all joints as forces of those that follow no other: a follower adds its multiplier times its own."""
-    nv = max((joint.own_v.stop for joint in joints), default=0)
-    out = np.zeros((len(forces), nv))
-    for joint in joints:
-        weight = 1.0 if joint.mimic is None else joint.mimic.multiplier
-        out[:, joint.own_v] += weight * forces[:, joint.v]
-    return out
 
 
 def reach(joints: Sequence[PinJoint], pin_model: Any, motion: Motion) -> Array:

@@ -8,16 +8,13 @@ from typing import Any
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from rttrr_pin.arithmetic import EPS
 from rttrr_pin.model import Joint, JointType, Model
 from rttrr_pin.model.joint import AXIAL
+from rttrr_pin.oracles.differing import differs
 
 Array = NDArray[np.float64]
-
-TOLERANCE = 64 * EPS
-"""Relative; merging inertias over fixed joints and turning them by rpy rounds a few times."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -115,8 +112,8 @@ def _joint_differences(model: Model, pin_model: Any, data: Any, joint: Joint, i:
     if joint.type is JointType.FIXED:
         at = pin_model.getFrameId(joint.name, pin.FrameType.FIXED_JOINT)
         frame = pin_model.frames[at]
-        yield from _differs(f"{here} placement R", R, frame.placement.rotation, 1.0)
-        yield from _differs(f"{here} placement p", p, frame.placement.translation)
+        yield from differs(f"{here} placement R", R, frame.placement.rotation, 1.0)
+        yield from differs(f"{here} placement p", p, frame.placement.translation)
         yield from _inertia_differences(link, _inertia(model, [(i, np.eye(3), np.zeros(3))]), frame.inertia)
         return
     at = pin_model.getJointId(joint.name)
@@ -124,9 +121,9 @@ def _joint_differences(model: Model, pin_model: Any, data: Any, joint: Joint, i:
     if pin_model.parents[at] != parent:
         yield f"{here}: hangs on {pin_model.names[pin_model.parents[at]]!r}, not where the file has it"
     placement = pin_model.jointPlacements[at]
-    yield from _differs(f"{here} placement R", R, placement.rotation, 1.0)
-    yield from _differs(f"{here} placement p", p, placement.translation)
-    yield from _differs(f"{here} axis", _subspace(joint), data.joints[at].S, 1.0)
+    yield from differs(f"{here} placement R", R, placement.rotation, 1.0)
+    yield from differs(f"{here} placement p", p, placement.translation)
+    yield from differs(f"{here} axis", _subspace(joint), data.joints[at].S, 1.0)
     yield from _limit_differences(here, joint, pin_model, at)
     merged = [(i, np.eye(3), np.zeros(3)), *((k, *_placement_on_moving(model, k)[:2]) for k in _merged(model, i))]
     yield from _inertia_differences(link, _inertia(model, merged), pin_model.inertias[at])
@@ -145,16 +142,16 @@ def _mimic_differences(model: Model) -> Iterator[str]:
         number = pin_model.getJointId(joint.name)
         if number < pin_model.njoints and pin_model.joints[number].shortname() == "JointModelMimic" and joint.mimic:
             theirs = pin_model.joints[number].extract()
-            yield from _differs(f"joint {joint.name!r} mimic multiplier", joint.mimic.multiplier, theirs.scaling)
-            yield from _differs(f"joint {joint.name!r} mimic offset", joint.mimic.offset, theirs.offset)
+            yield from differs(f"joint {joint.name!r} mimic multiplier", joint.mimic.multiplier, theirs.scaling)
+            yield from differs(f"joint {joint.name!r} mimic offset", joint.mimic.offset, theirs.offset)
 
 
 def _inertia_differences(link: str, ours: tuple[float, Array, Array], theirs: Any) -> Iterator[str]:
     mass, com, tensor = ours
-    yield from _differs(f"{link} mass", mass, theirs.mass)
+    yield from differs(f"{link} mass", mass, theirs.mass)
     if mass:
-        yield from _differs(f"{link} centre of mass", com, theirs.lever)
-    yield from _differs(f"{link} inertia", tensor, theirs.inertia, mass * float(com @ com))
+        yield from differs(f"{link} centre of mass", com, theirs.lever)
+    yield from differs(f"{link} inertia", tensor, theirs.inertia, mass * float(com @ com))
 
 
 def _limit_differences(here: str, joint: Joint, pin_model: Any, at: int) -> Iterator[str]:
@@ -166,8 +163,8 @@ def _limit_differences(here: str, joint: Joint, pin_model: Any, at: int) -> Iter
         ("velocity limit", limits.velocity, pin_model.velocityLimit[v]),
         ("effort limit", limits.effort, pin_model.effortLimit[v]),
     ]
-    yield from _differs(f"{here} damping", joint.dynamics.damping, pin_model.damping[v])
-    yield from _differs(f"{here} friction", joint.dynamics.friction, pin_model.upperDryFrictionLimit[v])
+    yield from differs(f"{here} damping", joint.dynamics.damping, pin_model.damping[v])
+    yield from differs(f"{here} friction", joint.dynamics.friction, pin_model.upperDryFrictionLimit[v])
     if joint.type is not JointType.CONTINUOUS:
         compared += [
             ("lower limit", limits.lower, pin_model.lowerPositionLimit[q]),
@@ -175,19 +172,7 @@ def _limit_differences(here: str, joint: Joint, pin_model: Any, at: int) -> Iter
         ]
     for what, ours, theirs in compared:
         if np.isfinite(ours):
-            yield from _differs(f"{here} {what}", ours, theirs)
-
-
-def _differs(what: str, ours: ArrayLike, theirs: ArrayLike, scale: float = 0.0) -> Iterator[str]:
-    """A line, if two numbers or arrays are apart by more than rounding."""
-    x, y = np.asarray(ours, dtype=float), np.asarray(theirs, dtype=float)
-    size = max(float(np.linalg.norm(x)), scale)
-    if x.shape != y.shape or not np.linalg.norm(x - y) <= TOLERANCE * size:
-        yield f"{what}: {_short(y)}, the file says {_short(x)}"
-
-
-def _short(x: Array) -> str:
-    return np.array2string(x, precision=17, separator=", ").replace("\n", "")
+            yield from differs(f"{here} {what}", ours, theirs)
 
 
 def _subspace(joint: Joint) -> Array:
