@@ -22,7 +22,7 @@ from rttrr_pin.model.wrench import LINK_QUANTITIES
 from rttrr_pin.oracles import Evaluation, make_oracle
 from rttrr_pin.report import as_json, state_data, validation_data
 from rttrr_pin.validate import Sampler, compare_state, validate
-from rttrr_pin.validate import run as run_module
+from rttrr_pin.validate import ours as ours_module
 from rttrr_pin.validate.compare import SETTLED, Ranking
 from rttrr_pin.validate.settle import settle, true_numbers
 from test_validate import Liar, liar
@@ -236,7 +236,7 @@ def test_a_run_settles_the_worst_failing_states_and_the_worst_passing_one(
     assert 0 < result.failing == (q > limit).sum()
     assert (result.failing > SETTLED) == several
     *failing, passing = result.settled
-    shares = [max(gap.share[0] for gap in compare_state(rttrr, k, oracle="liar").gaps) for k in range(150)]
+    shares = [max(gap.share[0] for gap in compare_state(rttrr, k, oracle="liar", states=150).gaps) for k in range(150)]
     assert [one.state for one in failing] == sorted(np.flatnonzero(q > limit), key=lambda k: -shares[k])[:SETTLED]
     assert passing.state == max(np.flatnonzero(q <= limit), key=lambda k: shares[k])
     for one in failing:
@@ -258,7 +258,7 @@ def test_where_none_agrees_there_is_no_passing_state(rttrr: Robot, liar: type[Li
 
 def test_a_wrong_recursion_of_ours_is_ours(rttrr: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
     wrong = altered(rttrr.model, 4, "inertia")
-    monkeypatch.setattr(run_module, "bounded_dynamics", lambda model, *arrays: bounded_dynamics(wrong, *arrays))
+    monkeypatch.setattr(ours_module, "bounded_dynamics", lambda model, *arrays: bounded_dynamics(wrong, *arrays))
     result = validate(rttrr, 40)
     assert result.settled
     for one in result.settled[: min(result.failing, SETTLED)]:
@@ -301,7 +301,7 @@ def test_data_say_who_is_right(rttrr: Robot, liar: type[Liar]) -> None:
     assert one["theirs"]["program"] == "pinocchio"
     assert (one["theirs"]["first_wrong"]["quantity"], one["theirs"]["first_wrong"]["at"]) == ("F", "link_3")
     assert one["ours"]["first_wrong"] is None
-    again = state_data(compare_state(rttrr, one["state"], oracle="liar"))["settled"]
+    again = state_data(compare_state(rttrr, one["state"], oracle="liar", states=150))["settled"]
     assert again == one
 
 
