@@ -17,8 +17,8 @@ def audit() -> list[str]:
         f"{paper['components']} components with {paper['printed_terms']:,} printed terms, "
         f"**{verdicts.get('match', 0)} match, {verdicts.get('differs', 0)} differ, {verdicts.get('unparsed', 0)} are "
         f"unparsed**; {paper['findings']} findings: {told}. {paper['terms_of_wrong_dimension']} printed terms have the "
-        "wrong dimension, which needs no derivation. Every corrected equation is symbolically equal to the derivation and "
-        f"lies in the same ball. {seconds['audit']:.1f} s; all moments n_i, derived and written, in "
+        "wrong dimension, which needs no derivation. Every corrected equation is symbolically equal to the derivation "
+        f"and lies in the same ball. {seconds['audit']:.1f} s; all moments n_i, derived and written, in "
         f"{seconds['derive']:.1f} s.",
         "",
         f"Planted misprints: {misprints['slips']:,} slips in {misprints['copies_with_slips']:,} copies, one to three "
