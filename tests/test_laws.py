@@ -238,10 +238,11 @@ def test_without_the_option_there_are_no_laws(capsys: pytest.CaptureFixture[str]
     assert "laws" not in json.loads(capsys.readouterr().out)
 
 
-@pytest.mark.parametrize("words", [["--state", "3"], ["example:all"]], ids=str)
-def test_laws_go_with_one_robot_and_many_states(words: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    if "example:all" in words:
-        pytest.importorskip("example_robot_data")
+@pytest.mark.parametrize("words", [["--state", "3"], ["urdf"]], ids=str)
+def test_laws_go_with_one_robot_and_many_states(
+    words: list[str], repository: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(repository)
     assert main(["validate", *words, "--laws"]) == 2
     assert "--laws" in capsys.readouterr().err
 

@@ -115,7 +115,7 @@ def test_the_worst_state_can_be_had_again(rttrr: Robot) -> None:
     result = validate(rttrr, 2000, seed=4, payload="random", family="mixed")
     worst = result.worst
     assert worst is not None
-    one = compare_state(rttrr, worst.share.state, seed=4, payload="random", family="mixed")
+    one = compare_state(rttrr, worst.share.state, seed=4, payload="random", family="mixed", states=2000)
     index = result.rows.index(worst)
     assert one.gaps[index].share[0] == worst.share.value
     assert one.agrees
@@ -238,6 +238,6 @@ def test_rows_are_plain_data(rttrr: Robot) -> None:
 @pytest.mark.parametrize("quantity", QUANTITIES)
 def test_the_error_over_all_links_is_the_norm_of_the_whole(rttrr: Robot, quantity: str) -> None:
     seen = validate(rttrr, 700, seed=2).whole[quantity]
-    one = compare_state(rttrr, seen.state, seed=2)
+    one = compare_state(rttrr, seen.state, seed=2, states=700)
     mine, theirs = (getattr(x, quantity)[0] for x in (one.ours, one.theirs))
     assert abs(seen.value - np.linalg.norm(mine - theirs) / np.linalg.norm(theirs) / EPS) <= ROUNDING * seen.value
