@@ -124,3 +124,10 @@ def test_public_docstrings_give_units(name: str) -> None:
     text = inspect.getdoc(thing) or ""
     members = "" if inspect.isfunction(thing) else inspect.getdoc(getattr(thing, "inverse_dynamics", thing)) or ""
     assert "[" in text + members
+
+
+def test_the_saved_laws_hold_on_as_many_trees_as_the_issue_asks() -> None:
+    result = json.loads((ROOT / "benchmarks/results/laws.json").read_text())
+    assert (result["trees"], result["states_per_tree"]) == (1000, 1000)
+    assert result["violations"] == []
+    assert all(law["violations"] == 0 and law["worst_share_of_bound"] <= 1.0 for law in result["laws"].values())
