@@ -134,3 +134,9 @@ def test_a_state_is_printed_with_the_numbers_of_its_run(capsys) -> None:
 
     assert main(["validate", "--states", "60"]) == 0
     assert "--states 60 --state" in capsys.readouterr().out
+
+
+def test_a_floating_joint_takes_the_readable_recursion() -> None:
+    """Its bound counts that the quaternion is not quite unit."""
+    floating = rttrr_pin.load("rttrr", base="floating")
+    assert Ours(floating, KERNEL_FROM).kernel is None
