@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from rttrr_pin.certify.rounding import BOUNDED, Bounded, bounded_dynamics
-from rttrr_pin.certify.settle import Off, Settlement, Side
+from rttrr_pin.certify.settle import Off, Settlement, Side, eps_in_words, verdict_of
 from rttrr_pin.certify.umpire import Certificate, Enclosure, certify
 
 __all__ = [
@@ -16,4 +16,6 @@ __all__ = [
     "Side",
     "bounded_dynamics",
     "certify",
+    "eps_in_words",
+    "verdict_of",
 ]

@@ -111,6 +111,24 @@ class Settlement:
         return f"{right.name} is right to {right.error}; {wrong.name} is off by {wrong.error}"
 
 
+def verdict_of(settled: Sequence[Settlement]) -> str:
+    """Who is right in one state that was settled against several oracles, and where the others are wrong first."""
+    if len(settled) == 1:
+        return settled[0].verdict
+    ours = max((one.ours for one in settled), key=lambda side: (side.first is not None, len(side.offs)))
+    sides = [ours, *(one.theirs for one in settled)]
+    right, wrong = ([side for side in sides if (side.first is None) == wanted] for wanted in (True, False))
+    off = "; ".join(f"{side.name} is off by {side.error}" for side in wrong)
+    if not right:
+        return f"none is right: {off}"
+    if not wrong:
+        by = ", ".join(f"{side.name} by {side.error} ({side.farthest.place})" for side in right)
+        return f"all are right to rounding: off are {by}"
+    *first, last = (side.name for side in right)
+    names = f"{', '.join(first)} and {last} are" if first else f"{last} is"
+    return f"{names} right to rounding; {off}"
+
+
 def eps_in_words(eps: float) -> str:
     """A number of eps, short."""
     return f"{eps:.1f} eps" if eps < 1e4 else f"{eps:.1e} eps"

@@ -20,6 +20,9 @@ MOST_LAW_STATES = 1000
 STATES = 10_000
 """Compared unless another number is asked for."""
 
+DEFAULT = ("pinocchio",)
+"""Compared with unless others are named."""
+
 
 def validate(
     robot: Annotated[
@@ -52,8 +55,12 @@ def validate(
         bool, typer.Option("--friction", help="Take damping and friction of <dynamics> into tau.")
     ] = False,
     oracle: Annotated[
-        str, typer.Option(help="What to compare with: pinocchio, or lagrange (driving forces alone).")
-    ] = "pinocchio",
+        list[str] | None,
+        typer.Option(
+            help="What to compare with: pinocchio (unless another is named), mujoco (extra 'mujoco'), lagrange "
+            "(driving forces alone). May be repeated."
+        ),
+    ] = None,
     laws: Annotated[
         bool, typer.Option("--laws", help="Also try the laws of mechanics, which need no other program.")
     ] = False,
@@ -65,7 +72,7 @@ def validate(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
     full: Annotated[bool, typer.Option("--full", help="Show every row of a long table.")] = False,
 ) -> int:
-    """Compare our recursion with Pinocchio's on random states: tau, F, N, f, n at every joint and link.
+    """Compare our recursion with Pinocchio's, or others', on random states: tau, F, N, f, n at every joint and link.
 
     Several robots each go through a fixed and a floating base, and those that cannot be compared are listed with what
     in their file stops them.
@@ -80,6 +87,7 @@ def validate(
     from rttrr_pin import validate as validation
     from rttrr_pin.errors import InputError
 
+    oracles = tuple(oracle or DEFAULT)
     several = _several(robot)
     if several:
         one_robot = {
@@ -93,9 +101,10 @@ def validate(
             "--full": full,
             "--laws": laws,
             "--search": search is not None,
+            "--oracle more than once": len(oracles) > 1,
         }
         _refuse([option for option, given in one_robot.items() if given])
-        return _validate_several(several, validation.Task(states, seed, family, oracle), json, quiet)
+        return _validate_several(several, validation.Task(states, seed, family, oracles[0]), json, quiet)
     loading: dict[str, Any] = {"base": base, "friction": friction}
     if gravity is not None:
         loading["gravity"] = numbers_of("--gravity", gravity, 3)
@@ -104,7 +113,7 @@ def validate(
         "seed": seed,
         "family": family,
         "payload": _payload(payload, payload_link, payload_axes),
-        "oracle": oracle,
+        "oracle": oracles,
     }
     console = Output(quiet=quiet or json == "-", soft_wrap=False)
     if state is not None:
@@ -132,13 +141,13 @@ def validate(
         "--payload-axes": payload_axes if payload_axes != "link" else None,
         "--gravity": gravity,
         "--base": base if base != "fixed" else None,
-        "--oracle": oracle if oracle != "pinocchio" else None,
+        "--oracle": oracles if oracles != DEFAULT else None,
     }
     report.show_validation(result, console, _rerun(robot, again, friction), full)
     if tried is not None:
         report.show_laws(tried, console)
     if found is not None:
-        report.show_search(found, console)
+        report.show_search(found, console, several=len(oracles) > 1)
     right = (result.agrees, tried is None or tried.holds, found is None or found.agrees)
     return AGREE if all(right) else DISAGREE
 
@@ -216,6 +225,6 @@ def _rerun(robot: str, options: Mapping[str, object], friction: bool) -> str:
     """The command that draws the same states, to which --state can be added."""
     words = ["rttrr-pin", "validate", *([robot] if robot != "rttrr" else [])]
     for option, value in options.items():
-        if value is not None:
-            words += [option, str(value)]
+        for each in value if isinstance(value, tuple) else (value,):
+            words += [option, str(each)] if each is not None else []
     return shlex.join([*words, "--friction"] if friction else words)

@@ -96,8 +96,7 @@ class MujocoOracle:
             mujoco.mj_kinematics(model, data)
             mujoco.mj_comPos(model, data)
             mujoco.mj_comVel(model, data)
-            if model.nv:
-                mujoco.mj_rne(model, data, 1, tau[k])
+            mujoco.mj_rne(model, data, 1, tau[k])
             data.xfrc_applied[:] = 0.0
             for body, in_base, f, n in acting:
                 self._apply(body, f[k], n[k], in_base, tau[k])
@@ -116,8 +115,7 @@ class MujocoOracle:
         moment = n + np.cross(data.xpos[body] - data.xipos[body], f)
         data.xfrc_applied[body, :3] -= f
         data.xfrc_applied[body, 3:] -= moment
-        if self.compiled.nv:
-            mujoco.mj_applyFT(self.compiled, data, f, n, data.xpos[body], body, tau)
+        mujoco.mj_applyFT(self.compiled, data, f, n, data.xpos[body], body, tau)
 
     def _driving_forces(self, motion: Motion, theirs: Array, q: Array, v: Array, a: Array) -> tuple[Array, Array]:
         """Tau with what the joints take themselves, and the latter alone, of the joints that follow no other."""

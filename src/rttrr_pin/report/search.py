@@ -11,12 +11,13 @@ if TYPE_CHECKING:
     from rttrr_pin.validate.search import Found
 
 
-def show_search(found: Found, console: Console) -> None:
-    """What was found, beside what chance had found."""
+def show_search(found: Found, console: Console, several: bool = False) -> None:
+    """What was found, beside what chance had found; of several oracles, against which."""
     verdict = Text("PASS", "bold green") if found.agrees else Text("FAIL", "bold red")
+    against = f" against {found.oracle}" if several else ""
     told = (
         f"worst of {found.evaluations:,} states searched, seed {found.seed}: share {found.share:.3f} in "
-        f"{found.quantity} at {found.at}, where random states had {found.random:.3f}"
+        f"{found.quantity} at {found.at}{against}, where random states had {found.random:.3f}"
     )
     console.print(verdict, Text(told), soft_wrap=True)
 
@@ -26,6 +27,7 @@ def search_data(found: Found) -> dict[str, Any]:
     return {
         "quantity": found.quantity,
         "at": found.at,
+        "oracle": found.oracle,
         "share": found.share,
         "share_of_random_states": found.random,
         "evaluations": found.evaluations,

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from rich.console import Console
 from rich.text import Text
 
-from rttrr_pin.certify import Off, Settlement, Side
-from rttrr_pin.validate import StateReport, Validation
+from rttrr_pin.certify import Off, Settlement, Side, verdict_of
+from rttrr_pin.validate import Validation
 from rttrr_pin.validate.compare import SETTLED
 
 
@@ -20,17 +21,24 @@ def show_settled(result: Validation, console: Console) -> None:
     if result.failing:
         which = f"the {shown} worst of " if shown < result.failing else ""
         console.print(Text(f"settled by balls, {which}{result.failing:,} failing states:"))
-    for one in result.settled[:shown]:
-        console.print(Text(f"  state {one.state}: {one.verdict}"), soft_wrap=True)
-    for one in result.settled[shown:]:
-        told = "  worst passing state" if shown else "settled by balls, worst state"
-        console.print(Text(f"{told} {one.state}: {one.verdict}"), soft_wrap=True)
+    for number, settled in enumerate(result.settled_states):
+        passing = "  worst passing state" if shown else "settled by balls, worst state"
+        told = "  state" if number < shown else passing
+        console.print(Text(f"{told} {settled[0].state}: {verdict_of(settled)}"), soft_wrap=True)
 
 
-def show_settlement(report: StateReport, console: Console) -> None:
-    """Who is right in the one state that is shown."""
-    told = f"settled by balls of {report.settled.bits} bits: {report.settled.verdict}"
-    console.print(Text(told), soft_wrap=True)
+def show_settlement(settled: Sequence[Settlement], console: Console) -> None:
+    """Who is right in the one state that is shown, settled against each oracle."""
+    bits = max(one.bits for one in settled)
+    console.print(Text(f"settled by balls of {bits} bits: {verdict_of(settled)}"), soft_wrap=True)
+
+
+def settled_data(settled: Sequence[Settlement]) -> dict[str, Any]:
+    """One state as data; of several oracles with a settlement for each."""
+    if len(settled) == 1:
+        return settlement_data(settled[0])
+    each = [settlement_data(one) for one in settled]
+    return {"state": settled[0].state, "verdict": verdict_of(settled), "oracles": each}
 
 
 def settlement_data(settled: Settlement) -> dict[str, Any]:

@@ -11,10 +11,11 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from rttrr_pin.model import QUANTITIES, STANDARD_GRAVITY
+from rttrr_pin.model import QUANTITIES, STANDARD_GRAVITY, LinkWrenches
 from rttrr_pin.model.wrench import LINK_QUANTITIES
 from rttrr_pin.report.settlement import show_settled, show_settlement
-from rttrr_pin.validate import Row, StateReport, Validation
+from rttrr_pin.report.several import against, places, several_table, word
+from rttrr_pin.validate import Row, StateReport, Validation, View
 
 Array = NDArray[np.float64]
 
@@ -33,38 +34,53 @@ def show_validation(result: Validation, console: Console, rerun: str = "", full:
             f"{_unusual(result)}; ours against {result.oracle}"
         ),
     )
-    shown = list(result.rows)
-    if len(shown) > MOST_ROWS and not full:
-        groups = [[row for row in result.rows if row.quantity == key] for key in QUANTITIES]
-        shown = [max(group, key=lambda row: row.share.value) for group in groups if group]
-    console.print(_validation_table(shown))
-    if len(shown) < len(result.rows):
-        console.print(Text(f"the worst of {len(result.rows)} rows for each quantity; --full shows all"))
+    grouped = places(result)
+    shown = grouped
+    if len(grouped) > MOST_ROWS and not full:
+        groups = [[place for place in grouped if place.quantity == key] for key in QUANTITIES]
+        shown = [max(group, key=lambda place: place.share) for group in groups if group]
+    several = len(result.against) > 1
+    console.print(
+        several_table(result, shown) if several else _validation_table([row for place in shown for row in place.given])
+    )
+    if len(shown) < len(grouped):
+        console.print(Text(f"the worst of {len(grouped)} rows for each quantity; --full shows all"))
     console.print(Text(LEGEND, "dim"))
     _verdict(result.agrees, result, console)
     show_settled(result, console)
     worst = result.worst
     if worst is not None and rerun:
-        where = f"worst state {worst.share.state} ({worst.quantity} at {worst.at})"
+        where = f"worst state {worst.share.state} ({worst.quantity} at {worst.at}{against(result, worst)})"
         console.print(Text(f"{where}, in full: {rerun} --state {worst.share.state}"), soft_wrap=True)
 
 
 def show_state(report: StateReport, console: Console) -> None:
     """One state: its coordinates, then each quantity, ours beside the oracle's."""
-    console.print(Text(report.robot, "bold"), Text(f"state {report.index}; ours against {report.oracle}"))
+    console.print(
+        Text(report.robot, "bold"),
+        Text(f"state {report.index}; ours against {', '.join(view.oracle for view in report.views)}"),
+    )
     console.print(_coordinates_table(report))
     for load in report.states.loads:
         axes = "base axes" if load.in_base else "link axes"
         f, n = _numbers(load.f.ravel()), _numbers(load.n.ravel())
         console.print(Text(f"payload at {report.ours.links[load.link]}, {axes}: f {f} N, n {n} N m"))
+    for view in report.views:
+        if len(report.views) > 1:
+            console.print(Text(f"ours against {view.oracle}", "bold"))
+        _show_view(report, view, console)
+    show_settlement([view.settled for view in report.views], console)
+
+
+def _show_view(report: StateReport, view: View, console: Console) -> None:
+    """Ours beside one oracle's."""
     table = Table("", "ours", "theirs", "differ", "in eps", "", box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
     table.columns[0].overflow = "fold"
     for column in (1, 2, 3, 4):
         table.columns[column].justify = "right"
         table.columns[column].no_wrap = True
-    pairs = zip(report.rows, report.gaps, _values(report), strict=True)
     previous = ""
-    for row, gap, (ours, theirs) in pairs:
+    for row, gap, (ours, theirs) in zip(view.rows, view.gaps, _values(report.ours, view), strict=True):
         if row.quantity != previous:
             table.add_section()
             table.add_row(Text(row.quantity if row.quantity == "tau" else f"{row.quantity} [{row.unit}]", "bold"))
@@ -75,14 +91,13 @@ def show_state(report: StateReport, console: Console) -> None:
             "\n".join(f"{x:.15g}" for x in theirs),
             f"{gap.difference[0]:.1e}",
             f"{gap.relative[0]:.1f}",
-            _word(bool(gap.share[0] <= 1.0)),
+            word(bool(gap.share[0] <= 1.0)),
         )
     console.print(table)
-    shares = [float(gap.share[0]) for gap in report.gaps]
-    worst = report.rows[int(np.argmax(shares))]
+    shares = [float(gap.share[0]) for gap in view.gaps]
+    worst = view.rows[int(np.argmax(shares))]
     told = f"closest to the gate: {worst.quantity} at {worst.at}, {max(shares):.3f} of what rounding can explain"
-    console.print(_word(report.agrees), Text(told))
-    show_settlement(report, console)
+    console.print(word(view.agrees), Text(told))
 
 
 def _unusual(result: Validation) -> str:
@@ -109,7 +124,7 @@ def _validation_table(rows: Iterable[Row]) -> Table:
             row.quantity if first else "",
             Text(row.at),
             *_worst(row),
-            _word(row.passed),
+            word(row.passed),
         )
     return table
 
@@ -137,12 +152,12 @@ def _coordinates_table(report: StateReport) -> Table:
     return table
 
 
-def _values(report: StateReport) -> Iterable[tuple[Array, Array]]:
+def _values(ours: LinkWrenches, view: View) -> Iterable[tuple[Array, Array]]:
     """Ours and theirs, in the order of the rows."""
-    ours, theirs = report.ours, report.theirs
+    theirs = view.theirs
     for column in range(ours.tau.shape[1]):
         yield ours.tau[0, column, None], theirs.tau[0, column, None]
-    for key in (key for key in LINK_QUANTITIES if any(row.quantity == key for row in report.rows)):
+    for key in (key for key in LINK_QUANTITIES if any(row.quantity == key for row in view.rows)):
         yield from zip(getattr(ours, key)[0], getattr(theirs, key)[0], strict=True)
 
 
@@ -152,11 +167,8 @@ def _verdict(agrees: bool, result: Validation, console: Console) -> None:
     else:
         bad = [row for row in result.rows if not row.passed]
         told = f"{len(bad)} of {len(result.rows)} rows beyond rounding, first {bad[0].quantity} at {bad[0].at}"
-    console.print(_word(agrees), Text(f"{told} ({result.seconds:.1f} s)"))
-
-
-def _word(passed: bool) -> Text:
-    return Text("PASS", "bold green") if passed else Text("FAIL", "bold red")
+        told += against(result, bad[0])
+    console.print(word(agrees), Text(f"{told} ({result.seconds:.1f} s)"))
 
 
 def _numbers(x: Array) -> str:

@@ -147,18 +147,16 @@ class Comparison:
     Attributes:
         rows: of each quantity at each link or joint.
         whole: by quantity, the largest |ours - oracle| / |oracle| in eps, in the norm over all links or joints.
-        ranking: the states to look at again.
     """
 
     def __init__(self, model: Model, quantities: Sequence[str] = QUANTITIES) -> None:
         """Prepare to compare the quantities that an oracle gives."""
         self.rows = [Row(*labels) for labels in _labels(model) if labels[0] in quantities]
         self.whole = {quantity: Worst() for quantity in quantities}
-        self.ranking = Ranking()
         self._shares = _shares(model)
 
-    def add(self, first: int, ours: LinkWrenches, oracle: Evaluation, bound: LinkWrenches) -> None:
-        """Take in the results of consecutive states, (N, ...) each."""
+    def add(self, first: int, ours: LinkWrenches, oracle: Evaluation, bound: LinkWrenches) -> Array:
+        """Take in the results of consecutive states, (N, ...) each; return the largest share of each state, (N,)."""
         shares = np.zeros(len(ours.tau))
         for row, gap in zip(self.rows, self.gaps(ours, oracle, bound), strict=True):
             share = gap.share
@@ -167,10 +165,10 @@ class Comparison:
             row.share.see(share, first)
             row.failures += int((share > 1.0).sum())
             np.maximum(shares, share, out=shares)
-        self.ranking.see(shares, first)
         for quantity, worst in self.whole.items():
             mine, theirs = (getattr(x, quantity).reshape(len(ours.tau), -1) for x in (ours, oracle.wrenches))
             worst.see(ratio(_finite_norm(mine - theirs), EPS * _norm(theirs)), first)
+        return shares
 
     def gaps(self, ours: LinkWrenches, oracle: Evaluation, bound: LinkWrenches) -> Iterator[Gap]:
         """The gap of each row, in the order of `rows`."""

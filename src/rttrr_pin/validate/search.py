@@ -16,7 +16,7 @@ from scipy.optimize import differential_evolution
 from rttrr_pin.model import Wrench
 from rttrr_pin.model.inputs import whole_number
 from rttrr_pin.robot import Robot
-from rttrr_pin.validate.run import Contest
+from rttrr_pin.validate.contest import Contest, Oracles
 from rttrr_pin.validate.states import States
 
 Array = NDArray[np.float64]
@@ -35,6 +35,7 @@ class Found:
     Attributes:
         quantity: tau, F, N, f or n.
         at: name of the link (of the joint for tau).
+        oracle: the program that ours differs from there.
         share: |ours - oracle| as a share of what the gate allows.
         random: the largest share among the random states that the search started from.
         evaluations: how many states were looked at.
@@ -44,6 +45,7 @@ class Found:
 
     quantity: str
     at: str
+    oracle: str
     share: float
     random: float
     evaluations: int
@@ -61,7 +63,7 @@ def search(
     evaluations: int = 20_000,
     seed: int = 0,
     payload: Wrench | str | None = None,
-    oracle: str = "pinocchio",
+    oracle: Oracles = "pinocchio",
     progress: Callable[[int], None] = lambda done: None,
 ) -> Found:
     """Look for the state at which ours and an oracle differ most, as a share of what rounding can explain.
@@ -71,7 +73,7 @@ def search(
         evaluations: about how many states to look at, at least 512.
         seed: of the search.
         payload: as in `validate`; a random one is varied too.
-        oracle: one of `oracles.ORACLES`.
+        oracle: one of `oracles.ORACLES`, or several: what is looked for is the largest share against any of them.
         progress: called with the number of states done.
 
     Returns:
@@ -113,5 +115,5 @@ def search(
     state = sampler.made_of(np.atleast_2d(found.x))
     gaps = contest.gaps(state)
     k = int(np.argmax([gap.share[0] for gap in gaps]))
-    row = contest.comparison.rows[k]
-    return Found(row.quantity, row.at, float(gaps[k].share[0]), random, done, seed, state)
+    opponent, row = contest.rows[k]
+    return Found(row.quantity, row.at, opponent.oracle.name, float(gaps[k].share[0]), random, done, seed, state)

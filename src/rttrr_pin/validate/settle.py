@@ -6,6 +6,8 @@ state is outside the gate, at least one of the two is outside its half.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from rttrr_pin.certify.settle import Off, Settlement, Side, in_order, nearest
@@ -20,20 +22,20 @@ from rttrr_pin.validate.states import States
 
 
 def settle_state(
-    model: Model, drawn: States, ours: LinkWrenches, theirs: Evaluation, bound: LinkWrenches, oracle: str
-) -> Settlement:
-    """Who is right in one state.
+    model: Model, drawn: States, ours: LinkWrenches, bound: LinkWrenches, others: Sequence[tuple[str, Evaluation]]
+) -> tuple[Settlement, ...]:
+    """Who is right in one state, ours or each of the others; the truth is the same for all.
 
     Args:
         model: the robot.
         drawn: the state, (1, ...).
         ours: our result, (1, ...).
-        theirs: the oracle's, and what it rounds beyond ours.
         bound: running error bound of ours.
-        oracle: its name.
+        others: by name, an oracle's result, and what it rounds beyond ours.
     """
     certificate = certify(model, drawn.q, drawn.v, drawn.a, drawn.loads, true_numbers(model))
-    return settle(model, certificate, ours, theirs, bound, oracle, drawn.first)
+    settled = (settle(model, certificate, ours, theirs, bound, name, drawn.first) for name, theirs in others)
+    return tuple(settled)
 
 
 def settle(
