@@ -104,7 +104,7 @@ def test_shapes_meshes_and_mujoco_s_own_section_are_left_out() -> None:
         '<link name="link_1"><collision><geometry><mesh filename="nowhere.stl"/></geometry></collision>'
         '<visual><geometry><box size="1 1 1"/></geometry></visual>',
     )
-    text = text.replace("</robot>", '<mujoco><compiler fusestatic="true"/><option gravity="1 2 3"/></mujoco></robot>')
+    text = text.replace("</robot>", '<mujoco><option><flag gravity="disable"/></option></mujoco></robot>')
     assert worst_share(rttrr_pin.load(text)) <= WELL_BELOW
 
 
