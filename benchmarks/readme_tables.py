@@ -88,6 +88,7 @@ TABLES: dict[str, dict[str, Callable[[], list[str]]]] = {
         "cost": cost_table,
         "robots": robots_table,
         "audit": proof_tables.audit,
+        "bounds": proof_tables.bounds,
     },
     "docs/kernel.md": {
         "joints": kernel_tables.joints,
