@@ -4,7 +4,7 @@ The kernel with bounds computes tau, F, N, f, n; the recursion on balls of 192 b
 states. A number counts as kept only if its ball shows that the whole of it lies within the bound. Written down:
 violations, bound over true error (median and least), and what the bound costs over the plain kernel.
 
-Run: python benchmarks/bounds.py [--states N] [--others N] [--robots NAME ...] [--save]. Exit 1 on a violation.
+Run: python benchmarks/bounds.py [--states N] [--others N] [--robots NAME ...] [--time] [--save]. Exit 1 on a violation.
 """
 
 from __future__ import annotations
@@ -25,6 +25,7 @@ from rttrr_pin.certify.balls import precision
 from rttrr_pin.certify.straight import straight
 from rttrr_pin.model import QUANTITIES
 from rttrr_pin.validate import Sampler
+from saved import result
 
 ROBOTS = ("rttrr", "trr", "trtr", "trtrr", "trttr", "example:panda", "example:talos_reduced")
 BLOCK = 1000
@@ -92,7 +93,14 @@ def main() -> int:
     parser.add_argument("--states", type=int, default=1_000_000)
     parser.add_argument("--others", type=int, default=100_000)
     parser.add_argument("--robots", nargs="*", default=ROBOTS)
+    parser.add_argument("--time", action="store_true", help="measure the cost again, and keep what else was saved")
     chosen = parser.parse_args()
+    if chosen.time:
+        saved = result("bounds")
+        for name, robot in saved["robots"].items():
+            robot["time_with_bounds_over_plain"] = round(cost(name), 2)
+        finish("bounds", {key: saved[key] for key in ("violations", "robots")}, chosen.save)
+        return 0
     figures: dict[str, Any] = {}
     violations = 0
     for name in chosen.robots:
