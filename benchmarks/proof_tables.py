@@ -9,17 +9,16 @@ NAMES = {"example:panda": "Panda with fingers", "example:talos_reduced": "Talos 
 
 def audit() -> list[str]:
     paper, misprints = result("audit_paper"), result("audit_misprints")
-    verdicts, kinds, seconds = paper["verdicts"], paper["kinds"], paper["seconds_median"]
-    told = ", ".join(f"{count} {kind}" for kind, count in sorted(kinds.items(), key=lambda pair: -pair[1]))
+    derived = next(row["n"][1] for row in result("derive")["rows"] if row["robot"] == "rttrr")
+    told = ", ".join(f"{count} {kind}" for kind, count in sorted(paper["kinds"].items(), key=lambda pair: -pair[1]))
     found = misprints["copies_with_slips"] - len(misprints["copies_not_reported"])
     return [
-        f"Audit of the paper ({machine(paper)}; `python benchmarks/audit_paper.py`, `audit_misprints.py`): of "
-        f"{paper['components']} components with {paper['printed_terms']:,} printed terms, "
-        f"**{verdicts.get('match', 0)} match, {verdicts.get('differs', 0)} differ, {verdicts.get('unparsed', 0)} are "
-        f"unparsed**; {paper['findings']} findings: {told}. {paper['terms_of_wrong_dimension']} printed terms have the "
-        "wrong dimension, which needs no derivation. Every corrected equation is symbolically equal to the derivation "
-        f"and lies in the same ball. {seconds['audit']:.1f} s; all moments n_i, derived and written, in "
-        f"{seconds['derive']:.1f} s.",
+        f"Audit of the paper ({machine(paper)}; `python benchmarks/audit_paper.py`, `audit_misprints.py`, "
+        f"`derive.py`): of {paper['components']} components with {paper['printed_terms']:,} printed terms, "
+        f"**{paper['match']} match, {paper['differs']} differ, {paper['unparsed']} are unparsed**; "
+        f"{paper['findings']} findings: {told}. {paper['dimensionally_wrong']} printed terms have the wrong dimension, "
+        "which needs no derivation. Every corrected equation is symbolically equal to the derivation and lies in the "
+        f"same ball. {paper['seconds_median']:.1f} s; all moments n_i, derived and written, in {derived:.1f} s.",
         "",
         f"Planted misprints: {misprints['slips']:,} slips in {misprints['copies_with_slips']:,} copies, one to three "
         f"in each; {found:,} copies found, {100 * misprints['named_with_kind_and_term']:.1f} % of the slips named with "

@@ -1,9 +1,9 @@
 """The umpire: what a state costs, and how far ours and Pinocchio are off the true values.
 
 Errors are distances to the enclosure in eps of the norm of the true vector (for a torque, of the n or f of its joint),
-over all links; the median and the worst of the states. The truth is that of the file's doubles. Before anything is
-timed, the enclosures of the recorded operations are compared with those of the recursion run directly on balls, and
-no error of ours may exceed its bound, nor one of Pinocchio's its allowance.
+over all links; the median and the worst of the states. Ours is what `validate` takes for as many states. The truth is
+that of the file's doubles. Before anything is timed, the enclosures of the recorded operations are compared with those
+of the recursion run directly on balls, and no error of ours may exceed its bound, nor one of Pinocchio's its allowance.
 
     python benchmarks/umpire.py --save
 """
@@ -21,13 +21,14 @@ from numpy.typing import NDArray
 import rttrr_pin
 from common import arguments, finish
 from rttrr_pin import Robot
-from rttrr_pin.certify import Certificate, bounded_dynamics, certify
+from rttrr_pin.certify import Certificate, certify
 from rttrr_pin.certify.settle import nearest
 from rttrr_pin.certify.umpire import STRAIGHT_FROM
 from rttrr_pin.errors import InputError
 from rttrr_pin.oracles import Evaluation, make_oracle
 from rttrr_pin.validate import Sampler
 from rttrr_pin.validate.compare import Comparison
+from rttrr_pin.validate.ours import Ours
 from rttrr_pin.validate.states import States
 
 ROBOTS = {"rttrr": "RTTRR", "example:panda": "Panda with fingers", "example:talos_reduced": "Talos reduced"}
@@ -57,9 +58,13 @@ def errors(robot: Robot, count: int) -> dict[str, Any]:
     drawn = Sampler(robot.model, payload=robot.link_names[-1]).draw(0, count)
     arrays = (drawn.q, drawn.v, drawn.a, drawn.loads)
     certificate = certify(robot.model, *arrays, "read")
-    ours, bound = bounded_dynamics(robot.model, *arrays)
+    side = Ours(robot, count)
+    ours, bound = side(drawn)
     theirs = make_oracle("pinocchio", robot.model).evaluate(*arrays)
-    out: dict[str, Any] = {"bits": {str(bits): int((certificate.bits == bits).sum()) for bits in set(certificate.bits)}}
+    out: dict[str, Any] = {
+        "our_side": side.name,
+        "bits": {str(bits): int((certificate.bits == bits).sum()) for bits in set(certificate.bits)},
+    }
     for program, computed in (("ours", ours), ("pinocchio", theirs.wrenches)):
         comparison = Comparison(robot.model)
         gaps = comparison.gaps(computed, Evaluation(nearest(certificate, computed), theirs.rounding), bound)

@@ -188,7 +188,7 @@ def test_every_key_of_the_example_is_told_in_the_docs() -> None:
     import tomllib
 
     from rttrr_pin.paper.arm import LINK_KEYS
-    from rttrr_pin.paper.publication import EQUATION_KEYS, FILE_KEYS
+    from rttrr_pin.paper.file import EQUATION_KEYS, FILE_KEYS
     from rttrr_pin.paper.templates import KEYS
 
     text = (TWO_LINK.parents[1] / "docs/audit.md").read_text()

@@ -405,7 +405,7 @@ def test_yaml_is_read_too(tmp_path) -> None:
 def test_numbers_of_a_urdf_must_fit_the_table_of_frames(tmp_path) -> None:
     source = read_publication().equations
     assert source
-    from rttrr_pin.paper.publication import RTTRR
+    from rttrr_pin.paper.file import RTTRR
 
     text = RTTRR.read_text().replace('origin = ["l_2", "l_3", "h_3"]', 'origin = ["l_2", "l_2", "h_3"]')
     path = tmp_path / "conventions.toml"
@@ -416,7 +416,7 @@ def test_numbers_of_a_urdf_must_fit_the_table_of_frames(tmp_path) -> None:
 
 
 def test_the_paper_s_joints_must_be_those_of_the_urdf(tmp_path) -> None:
-    from rttrr_pin.paper.publication import RTTRR
+    from rttrr_pin.paper.file import RTTRR
 
     path = tmp_path / "conventions.toml"
     path.write_text(RTTRR.read_text().replace("prismatic along y", "prismatic along x"))

@@ -28,6 +28,12 @@ UNIT_ROUNDOFF = 2.0**-53
 EPS = 2 * UNIT_ROUNDOFF
 """The distance from 1 to the next float64: the unit in which errors are told."""
 
+SLACK = 1.0 + 1e-9
+"""Covers the rounding of running error bounds themselves."""
+
+SINE_ULPS = 4
+"""Of a sine or cosine: what NumPy states for its vectorised float64; compiled code keeps within one."""
+
 ROTATION_ERROR = 8 * UNIT_ROUNDOFF
 """Of an entry of a rotation matrix made from rpy: a sum of two products of sines and cosines, each within an ulp."""
 

@@ -164,7 +164,7 @@ class Robot:
         Args:
             outputs: what to compute, one name or several: `"tau"`, `"F"`, `"N"`, `"f"`, `"n"`, `"tau_joint"`,
                 `"mass_matrix"`, `"nonlinear_effects"`, `"gravity_torque"`, `"regressor"`, `"dtau_dq"`, `"dtau_dv"`,
-                `"dtau_da"`. The fewer, the faster.
+                `"dtau_da"`; and each of them with `"_bound"` behind, a bound on its rounding. The fewer, the faster.
             emitter: `"llvm"` (machine code), `"numba"`, `"numpy"` (wherever NumPy runs) or `"c"` (by the C compiler);
                 None for what is there.
 

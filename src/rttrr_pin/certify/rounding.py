@@ -22,20 +22,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rttrr_pin.algebra import Scalar, Vector
-from rttrr_pin.arithmetic import UNIT_ROUNDOFF, Arithmetic, Load, columns, dynamics, payloads_of
+from rttrr_pin.arithmetic import SINE_ULPS, SLACK, UNIT_ROUNDOFF, Arithmetic, Load, columns, dynamics, payloads_of
 from rttrr_pin.model import JointType, LinkWrenches, Model
 from rttrr_pin.model.wrench import LINK_QUANTITIES
 
 Array = NDArray[np.float64]
 Real: TypeAlias = Any  # float | Array: what NumPy's stubs cannot combine without casts
 
-SLACK = 1.0 + 1e-9
-"""Covers the rounding of the bounds themselves."""
-
 PLAIN = (int, float)
-
-SINE_ULPS = 4
-"""NumPy states at most 4 units in the last place for its vectorised float64 sine and cosine."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -21,17 +21,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from rttrr_pin.arithmetic import UNIT_ROUNDOFF
+from rttrr_pin.arithmetic import SINE_ULPS, SLACK, UNIT_ROUNDOFF
 from rttrr_pin.kernel.expression import Graph, Node, Op
 from rttrr_pin.kernel.known import error_of, is_power_of_two
 from rttrr_pin.kernel.program import Field, Program
 from rttrr_pin.kernel.quantities import BOUND
-
-SLACK = 1.0 + 1e-9
-"""Covers the rounding of the bounds themselves."""
-
-SINE_ULPS = 4
-"""What NumPy states for its vectorised sine and cosine; the other emitters keep within one."""
 
 
 def with_bounds(program: Program, outputs: tuple[Field, ...]) -> Program:

@@ -71,6 +71,19 @@ class Oracle(Protocol):
         """The quantities that it has of a batch of states, q: (N, nq), v, a: (N, nv) each."""
 
 
+def urdf_of(model: Model, program: str) -> str:
+    """The text that a program builds its own model from.
+
+    Raises:
+        OracleError: the model was made from numbers.
+    """
+    if not model.urdf:
+        raise OracleError(
+            f"robot {model.name!r} was made from numbers, and {program} builds from a URDF: load it from a file"
+        )
+    return model.urdf
+
+
 def make_oracle(name: str, model: Model) -> Oracle:
     """The oracle of that name for this robot.
 

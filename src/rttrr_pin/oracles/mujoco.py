@@ -32,7 +32,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rttrr_pin.arithmetic import Load
-from rttrr_pin.errors import OracleError
 from rttrr_pin.model import QUANTITIES, JointType, LinkWrenches, Model
 from rttrr_pin.oracles import Evaluation
 from rttrr_pin.oracles.joints import OracleJoint, friction, reduce_forces
@@ -56,10 +55,6 @@ class MujocoOracle:
             OracleError: the model has no URDF text, or MuJoCo refuses it.
             ModelMismatchError: MuJoCo read something else.
         """
-        if not model.urdf:
-            raise OracleError(
-                f"robot {model.name!r} was made from numbers, and MuJoCo builds from a URDF: load it from a file"
-            )
         self.model = model
         self.compiled = build(model)
         self.joints = mujoco_joints(model, self.compiled)

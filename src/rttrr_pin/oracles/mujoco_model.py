@@ -29,6 +29,7 @@ from numpy.typing import NDArray
 from rttrr_pin.errors import ModelMismatchError, OracleError
 from rttrr_pin.model import Joint, JointType, Link, Model
 from rttrr_pin.model.joint import AXIAL
+from rttrr_pin.oracles import urdf_of
 from rttrr_pin.oracles.differing import differs
 from rttrr_pin.oracles.joints import OracleJoint, own_slices
 
@@ -70,7 +71,7 @@ def build(model: Model) -> Any:
     """
     with _without_log():
         try:
-            spec = mujoco.MjSpec.from_string(_bare(model.urdf))
+            spec = mujoco.MjSpec.from_string(_bare(urdf_of(model, "MuJoCo")))
             bodies = {body.name: body for body in spec.bodies}
             found = [*_differences(model, bodies), *_mimic_differences(model, spec)]
             read = {name: _Inertial(body) for name, body in bodies.items() if name.startswith(PREFIX)}

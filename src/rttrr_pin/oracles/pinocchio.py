@@ -26,7 +26,7 @@ from rttrr_pin.arithmetic import EPS, Load
 from rttrr_pin.errors import ModelMismatchError, OracleError
 from rttrr_pin.model import QUANTITIES, LinkWrenches, Model
 from rttrr_pin.model.tree import ROOT_JOINT, UNIVERSE
-from rttrr_pin.oracles import Evaluation
+from rttrr_pin.oracles import Evaluation, urdf_of
 from rttrr_pin.oracles.joints import reduce_forces
 from rttrr_pin.oracles.pinocchio_joints import Motion, driving_forces, expand, pin_joints, reach
 from rttrr_pin.oracles.pinocchio_model import differences, pin_links, product
@@ -49,17 +49,14 @@ class PinocchioOracle:
             OracleError: the model has no URDF text, or Pinocchio refuses it.
             ModelMismatchError: Pinocchio built something else.
         """
-        if not model.urdf:
-            raise OracleError(
-                f"robot {model.name!r} was made from numbers, and Pinocchio builds from a URDF: load it from a file"
-            )
+        urdf = urdf_of(model, "Pinocchio")
         reserved = {UNIVERSE, ROOT_JOINT} if model.floating else {UNIVERSE}
         taken = [joint.name for joint in model.joints[model.floating :] if joint.name in reserved]
         if taken:
             raise OracleError(f"joint {taken[0]!r} has a name that Pinocchio keeps for itself: give it another one")
         try:
             root = (pin.JointModelFreeFlyer(),) if model.floating else ()
-            self.pin_model = pin.buildModelFromXML(model.urdf, *root)
+            self.pin_model = pin.buildModelFromXML(urdf, *root)
         except (ValueError, RuntimeError) as error:
             raise OracleError(f"Pinocchio refuses the URDF of {model.name!r}: {str(error).strip()}") from error
         found = differences(model, self.pin_model)

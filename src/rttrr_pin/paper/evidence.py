@@ -1,4 +1,4 @@
-"""Evidence that needs no pairing: dimensions, numbers against Pinocchio, and balls that prove what is equal."""
+"""Evidence that needs no pairing: numbers against Pinocchio, and balls that prove what is equal."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from rttrr_pin.oracles import make_oracle
 from rttrr_pin.symbolic.chain import SymbolicRobot
 from rttrr_pin.symbolic.motion import angles
 from rttrr_pin.symbolic.ring import evaluate
-from rttrr_pin.symbolic.symbols import Terms
+from rttrr_pin.symbolic.symbols import Role, Terms
 
 BITS = 256
 """Precision of the balls."""
@@ -59,7 +59,7 @@ class Witness:
         model = robot.model
         self.q, self.v, self.a = (rng.uniform(-2.0, 2.0, n) for n in (model.nq, model.nv, model.nv))
         self.values: dict[str, float] = dict(robot.letters.values)
-        payload = [name for name in robot.letters.values if str(robot.ring.symbols[name].role) == "payload"]
+        payload = [name for name in robot.letters.values if robot.ring.symbols[name].role is Role.PAYLOAD]
         self.values |= dict(zip(payload, map(float, rng.uniform(-20.0, 20.0, len(payload))), strict=True))
         for letter, numbers in (("q", self.q), ("v", self.v), ("a", self.a)):
             self.values |= {f"{letter}_{k}": float(x) for k, x in enumerate(numbers, start=1)}

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from itertools import product
 
 from rttrr_pin.paper.tables import Table
+from rttrr_pin.symbolic.chain import AXES
 from rttrr_pin.symbolic.symbols import (
     ACCELERATION,
     FORCE,
@@ -33,7 +34,7 @@ DIMENSIONS: Mapping[str, Dimension] = {
 }
 """What a symbol may measure."""
 
-AXES, PAIRS = ("x", "y", "z"), ("xy", "xz", "yz")
+PAIRS = ("xy", "xz", "yz")
 
 RESERVED = re.compile(r"(q|v|a|s|c|sign)_j?\d+(_\d+)*")
 """Names that symbols of motion have."""

@@ -6,7 +6,7 @@ A closed form is such a polynomial: sines and cosines are symbols of their own, 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
 from typing import Any
 
@@ -138,13 +138,3 @@ def evaluate(terms: Terms, values: Mapping[str, Any], number: Callable[[Fraction
                 product = product * values[name]
         total = total + product
     return total
-
-
-def by_role(terms: Terms, ring: Ring, roles: Sequence[Role]) -> dict[Factors, Terms]:
-    """A polynomial collected: for each product of symbols of these roles, the polynomial that multiplies it."""
-    collected: dict[Factors, Terms] = {}
-    for factors, coefficient in terms.items():
-        outer = tuple(factor for factor in factors if ring.symbols[factor[0]].role in roles)
-        inner = tuple(factor for factor in factors if ring.symbols[factor[0]].role not in roles)
-        collected.setdefault(outer, {})[inner] = coefficient
-    return collected

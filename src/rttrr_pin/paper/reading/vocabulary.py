@@ -65,10 +65,6 @@ class Vocabulary:
         self.names = frozenset(self._names.values())
         self.coordinates = frozenset(index for name in self.names if (index := index_of(name)) is not None)
 
-    def name_of(self, atom: Atom) -> str | None:
-        """The name of a symbol; None where it is unknown."""
-        return self._names.get(atom)
-
     def __contains__(self, atom: Atom) -> bool:
         return atom in self._names
 
