@@ -6,6 +6,7 @@ least |x| and at least |x_true|:
 
     z = fl(x + y):  b_z = b_x + b_y + |z|
     z = fl(x y):    b_z = m_x b_y + m_y b_x + |z|     (that is |x| b_y + |y| b_x + 2 u b_x b_y + |z|)
+    z = fl(x y + w): b_z = m_x b_y + m_y b_x + b_w + |z|, rounded once
     z = sin x:      b_z = b_x + 2 ulps |z|
 
 Terms of first order are exact; of second order one is counted twice. Inputs are the doubles themselves, without error;
@@ -22,7 +23,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 from rttrr_pin.arithmetic import SINE_ULPS, SLACK, UNIT_ROUNDOFF
-from rttrr_pin.kernel.expression import Graph, Node, Op
+from rttrr_pin.kernel.expression import FUSED, Graph, Node, Op
 from rttrr_pin.kernel.known import error_of, is_power_of_two
 from rttrr_pin.kernel.program import Field, Program
 from rttrr_pin.kernel.quantities import BOUND
@@ -98,11 +99,12 @@ class _Bounder:
         """What the errors of the operands do to the result."""
         if op is Op.SIGN:
             return self._constant(0.0)  # of rates, whose sign is that of an exact double
-        if op is not Op.MUL:
-            total = self.bounds[args[0]]
-            return total + self.bounds[args[1]] if len(args) > 1 else total
-        x, y = args
-        return self._most(x) * self.bounds[y] + self._most(y) * self.bounds[x]
+        if op is Op.MUL or op in FUSED:
+            x, y, *term = args
+            product = self._most(x) * self.bounds[y] + self._most(y) * self.bounds[x]
+            return product + self.bounds[term[0]] if term else product
+        total = self.bounds[args[0]]
+        return total + self.bounds[args[1]] if len(args) > 1 else total
 
     def _most(self, x: int) -> Node:
         """|x| + u b_x."""

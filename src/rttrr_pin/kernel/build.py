@@ -8,6 +8,7 @@ from dataclasses import replace
 from rttrr_pin.arithmetic import Arithmetic
 from rttrr_pin.errors import InputError
 from rttrr_pin.kernel.bounds import with_bounds
+from rttrr_pin.kernel.chains import in_chains
 from rttrr_pin.kernel.columns import arranged
 from rttrr_pin.kernel.expression import Graph, GraphFullError
 from rttrr_pin.kernel.program import Program
@@ -34,6 +35,7 @@ def build(
     outputs: Sequence[str],
     payloads: Sequence[PayloadSlot] = (),
     straight_line: int | None = STRAIGHT_LINE,
+    fused: bool = False,
 ) -> Program | Schedule:
     """The program of a robot, of the kind that suits its size.
 
@@ -42,30 +44,31 @@ def build(
         outputs: names from `QUANTITIES`.
         payloads: where payloads act.
         straight_line: operations, as traced, beyond which it is made of calls; None for never.
+        fused: whether products may be fused with sums; without, operations can be counted.
 
     Returns:
-        Straight lines or calls, simplified.
+        Straight lines or calls, simplified, with sums in chains.
 
     Raises:
         InputError: the robot is too large for these outputs.
     """
     if any(name.endswith(BOUND) for name in outputs):
-        return _bounded(model, outputs, payloads)
+        return _bounded(model, outputs, payloads, fused)
     if straight_line is None or not all(QUANTITIES[name].by_steps for name in outputs):
-        return simplify(_whole(model, outputs, payloads))
+        return in_chains(simplify(_whole(model, outputs, payloads)), fused)
     try:
         program = trace(model, outputs, payloads, most=straight_line * NODES)
     except GraphFullError:
-        return schedule(model, outputs, payloads)
+        return schedule(model, outputs, payloads, fused=fused)
     short = program.operations.total <= straight_line
-    return simplify(program) if short else schedule(model, outputs, payloads)
+    return in_chains(simplify(program), fused) if short else schedule(model, outputs, payloads, fused=fused)
 
 
-def _bounded(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot]) -> Program:
+def _bounded(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot], fused: bool) -> Program:
     """Values and bounds on their rounding; no inertia is moved between links, which would round it."""
     plain = tuple(dict.fromkeys(name.removesuffix(BOUND) for name in outputs))
     program = simplify(_whole(model, plain, payloads, lumped=False, arithmetic=KNOWING))
-    return with_bounds(program, outputs_of(model, outputs))
+    return with_bounds(in_chains(program, fused), outputs_of(model, outputs))
 
 
 def _whole(
@@ -87,7 +90,11 @@ def _whole(
 
 
 def schedule(
-    model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot] = (), lumped: bool = True
+    model: Model,
+    outputs: Sequence[str],
+    payloads: Sequence[PayloadSlot] = (),
+    lumped: bool = True,
+    fused: bool = False,
 ) -> Schedule:
     """A robot as calls, however large or small it is.
 
@@ -96,11 +103,13 @@ def schedule(
         outputs: names from `QUANTITIES`, of quantities with `by_steps`.
         payloads: where payloads act.
         lumped: whether inertia may be moved between links where that leaves the outputs as they are.
+        fused: whether products may be fused with sums.
 
     Returns:
-        Calls of steps, each step simplified.
+        Calls of steps, each step simplified, with sums in chains.
     """
     recorder = Recorder(Graph())
     arithmetic = replace(TRACING, call=recorder.call)
     results = record(recorder.graph, arithmetic, model, outputs, payloads, lumped)
-    return arranged(recorder, results, fields(model, outputs, payloads), outputs_of(model, outputs))
+    made = arranged(recorder, results, fields(model, outputs, payloads), outputs_of(model, outputs))
+    return replace(made, steps=tuple(replace(step, program=in_chains(step.program, fused)) for step in made.steps))

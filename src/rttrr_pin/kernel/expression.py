@@ -23,7 +23,7 @@ Number: TypeAlias = int | float
 
 
 class Op(enum.IntEnum):
-    """What a node does."""
+    """What a node does. The last three round once: x y + z, x y - z, z - x y."""
 
     CONSTANT = 0
     INPUT = 1
@@ -35,7 +35,12 @@ class Op(enum.IntEnum):
     COS = 7
     SIGN = 8
     ABS = 9
+    FMA = 10
+    FMS = 11
+    FNMA = 12
 
+
+FUSED = (Op.FMA, Op.FMS, Op.FNMA)
 
 LEAVES = (Op.CONSTANT, Op.INPUT)
 
@@ -176,6 +181,10 @@ class Graph:
             return inner if op in (Op.COS, Op.ABS) else self.neg(inner)
         return self._node(op, (x,))
 
+    def fused(self, op: Op, x: int, y: int, z: int) -> int:
+        """A product of two factors, as they stand in a node of theirs, with a third number: FMA, FMS or FNMA."""
+        return self._node(op, (x, y, z))
+
     def apply(self, op: Op, args: Sequence[int]) -> int:
         """An operation on nodes of this graph, by its constructor."""
         return BUILD[op](self, *args)
@@ -210,6 +219,9 @@ BUILD: dict[Op, Callable[..., int]] = {
     Op.COS: lambda graph, x: graph.function(Op.COS, x),
     Op.SIGN: lambda graph, x: graph.function(Op.SIGN, x),
     Op.ABS: lambda graph, x: graph.function(Op.ABS, x),
+    Op.FMA: lambda graph, x, y, z: graph.fused(Op.FMA, x, y, z),
+    Op.FMS: lambda graph, x, y, z: graph.fused(Op.FMS, x, y, z),
+    Op.FNMA: lambda graph, x, y, z: graph.fused(Op.FNMA, x, y, z),
 }
 """The constructor of each operation."""
 

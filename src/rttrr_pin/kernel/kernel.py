@@ -213,7 +213,7 @@ class Kernel:
         name = cache.key(self._emitter.identity, fingerprint(self.model), asked)
         code = cache.read(name)
         if code is None:
-            code = self._emitter.emit(build(self.model, self.outputs, slots, straight_line))
+            code = self._emitter.emit(build(self.model, self.outputs, slots, straight_line, self._emitter.fuses))
             cache.write(name, code)
         inputs, outputs = fields(self.model, self.outputs, slots), outputs_of(self.model, self.outputs)
         return Variant(inputs, outputs, self._emitter.load(code, inputs, outputs))

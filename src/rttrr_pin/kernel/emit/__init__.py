@@ -46,11 +46,13 @@ class Emitter(Protocol):
         name: in the registry.
         identity: everything that its bytes depend on but the program: versions, processor.
         calls: whether it takes schedules as well; else straight lines only, however long.
+        fuses: whether it has fused operations; else it is given none.
     """
 
     name: str
     identity: str
     calls: bool
+    fuses: bool
 
     def emit(self, program: Program | Schedule) -> bytes:
         """Translate a program."""

@@ -103,6 +103,7 @@ class CEmitter:
     name = "c"
     identity = "c"
     calls = False
+    fuses = False
 
     def emit(self, program: Program) -> bytes:
         """C source of the function alone."""

@@ -71,6 +71,7 @@ class LlvmEmitter:
 
     name = "llvm"
     calls = True
+    fuses = True
 
     def __init__(self) -> None:
         _initialised()

@@ -10,7 +10,7 @@ import struct
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from rttrr_pin.kernel.expression import Op
+from rttrr_pin.kernel.expression import FUSED, Op
 from rttrr_pin.kernel.program import Program
 from rttrr_pin.kernel.sincos import COSINE, LARGEST, PIO2, ROUND, SINE, TWO_OVER_PI
 
@@ -67,6 +67,10 @@ class Lines:
         """The sum x y + z, rounded once."""
         v = self.vector
         return self(f"call {v} @llvm.fma.v{self.lanes}f64({v} {x}, {v} {y}, {v} {z})")
+
+    def negated(self, x: str) -> str:
+        """The opposite."""
+        return self(f"fneg {self.vector} {x}")
 
     def bits(self, what: str, x: str, y: str) -> str:
         """A binary operation on vectors of int64."""
@@ -182,8 +186,12 @@ class VectorCode:
         op, args = graph.op[x], graph.args[x]
         if op in BINARY:
             name = lines(f"{BINARY[op]} contract {lines.vector} {self.get(args[0])}, {self.get(args[1])}")
+        elif op in FUSED:
+            left, right, term = (self.get(y) for y in args)
+            left = lines.negated(left) if op is Op.FNMA else left
+            name = lines.fma(left, right, lines.negated(term) if op is Op.FMS else term)
         elif op is Op.NEG:
-            name = lines(f"fneg {lines.vector} {self.get(args[0])}")
+            name = lines.negated(self.get(args[0]))
         elif op is Op.SIGN:
             name = self._sign(self.get(args[0]))
         elif op is Op.ABS:
@@ -245,7 +253,7 @@ def polynomials(lines: Lines, q: str) -> tuple[str, str]:
     second = op("fmul", k, splat(PIO2[1]))
     r = op("fadd", t, second)
     lost = op("fsub", second, op("fsub", r, t))
-    rest = fma(k, splat(PIO2[2]), fma(k, splat(PIO2[1]), lines(f"fneg {lines.vector} {second}")))
+    rest = fma(k, splat(PIO2[2]), fma(k, splat(PIO2[1]), lines.negated(second)))
     low = op("fadd", lost, rest)
     z = op("fmul", r, r)
     sine, cosine = (_horner(lines, z, terms) for terms in (SINE, COSINE))
@@ -254,7 +262,7 @@ def polynomials(lines: Lines, q: str) -> tuple[str, str]:
     w = op("fsub", splat(1.0), half)
     over = op("fsub", op("fsub", splat(1.0), w), half)
     tail = fma(op("fmul", z, z), cosine, over)
-    c = op("fadd", w, fma(lines(f"fneg {lines.vector} {r}"), low, tail))
+    c = op("fadd", w, fma(lines.negated(r), low, tail))
     quadrant = lines.as_bits(shifted)
     odd = lines(f"icmp slt {lines.integers} {bits('shl', quadrant, lines.whole(63))}, {lines.whole(0)}")
     mask, v = f"<{lines.lanes} x i1>", lines.vector

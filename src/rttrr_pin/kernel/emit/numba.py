@@ -44,6 +44,9 @@ FORM = {
     Op.NEG: "-{}",
     Op.SIGN: "sign({})",
     Op.ABS: "abs({})",
+    Op.FMA: "fma({}, {}, {})",
+    Op.FMS: "fma({}, {}, -{})",
+    Op.FNMA: "fma(-{}, {}, {})",
 }
 """Each operation in Python; sine and cosine are steps of their own."""
 
@@ -293,6 +296,7 @@ class NumbaEmitter:
     name = "numba"
     identity = "numba"
     calls = False
+    fuses = True
 
     def emit(self, program: Program) -> bytes:
         """Python source; what Numba makes of it is not kept on disk."""
@@ -312,7 +316,7 @@ class NumbaEmitter:
 
     def load(self, code: bytes, inputs: Sequence[Field], outputs: Sequence[Field]) -> NumbaExecutable:
         """Compile the source."""
-        space: dict[str, Any] = {"sign": sign, "inf": math.inf, "nan": math.nan}
+        space: dict[str, Any] = {"fma": fma, "sign": sign, "inf": math.inf, "nan": math.nan}
         exec(compile(code, "<program>", "exec"), space)
         compiler = cfunc(types.void(types.CPointer(types.float64)), fastmath={"contract"})
         segments = [compiler(space[f"segment_{step[0]}"]) for step in space["STEPS"] if len(step) == 1]

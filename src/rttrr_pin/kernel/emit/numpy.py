@@ -37,6 +37,7 @@ class NumpyEmitter:
     name = "numpy"
     identity = "numpy"
     calls = True
+    fuses = False
 
     def emit(self, program: Program | Schedule) -> bytes:
         """Python source of a function from columns of inputs to columns of outputs."""
