@@ -9,9 +9,10 @@ least |x| and at least |x_true|:
     z = fl(x y + w): b_z = m_x b_y + m_y b_x + b_w + |z|, rounded once
     z = sin x:      b_z = b_x + 2 ulps |z|
 
-Terms of first order are exact; of second order one is counted twice. Inputs are the doubles themselves, without error;
-numbers of the robot bring theirs (`Known`). Changes of sign, and products with powers of two among the robot's numbers,
-are exact.
+Terms of first order are exact; of second order one is counted twice. Inputs are the doubles themselves, without error,
+but for quaternions: what is meant by s is s / |s|, which differs by | |s| - 1 | <= | |s|^2 - 1 | of each component.
+Numbers of the robot bring their errors (`Known`). Changes of sign, and products with powers of two among the robot's
+numbers, are exact.
 
 The bounds are rounded too, and the values that they are computed from may be those of fused operations, which round
 once where these formulas round twice: both change a bound by at most some u for each operation on its way, and are
@@ -29,17 +30,18 @@ from rttrr_pin.kernel.program import Field, Program
 from rttrr_pin.kernel.quantities import BOUND
 
 
-def with_bounds(program: Program, outputs: tuple[Field, ...]) -> Program:
+def with_bounds(program: Program, outputs: tuple[Field, ...], quaternions: tuple[int, ...] = ()) -> Program:
     """The program with bounds among its outputs.
 
     Args:
         program: whose numbers of the robot are `Known`.
         outputs: names of the program's outputs, and of such with `BOUND` behind.
+        quaternions: the place of the first component of each among the inputs.
 
     Returns:
         A program with the same operations for the values, whose outputs are these.
     """
-    bounder = _Bounder(program)
+    bounder = _Bounder(program, quaternions)
     places = {}
     at = 0
     for output in program.outputs:
@@ -59,12 +61,14 @@ class _Bounder:
 
     Attributes:
         program: the program.
+        quaternions: first places of quaternions among the inputs.
         graph: the new operations.
         values: the new node of each old one.
         bounds: a bound on its error, in u.
     """
 
     program: Program
+    quaternions: tuple[int, ...] = ()
     graph: Graph = field(default_factory=Graph)
     values: dict[int, Node] = field(default_factory=dict)
     bounds: dict[int, Node] = field(default_factory=dict)
@@ -86,7 +90,7 @@ class _Bounder:
             value = old.value[x]
             return self._constant(float(value)), self._constant(error_of(value) / UNIT_ROUNDOFF)
         if op is Op.INPUT:
-            return Node(graph, graph.input(args[0])), self._constant(0.0)
+            return self._input(args[0]), self._length_error(args[0])
         z = Node(graph, graph.apply(op, [self.values[y].number for y in args]))
         inherited = self._inherited(op, args)
         if op in (Op.NEG, Op.ABS, Op.SIGN):
@@ -94,6 +98,18 @@ class _Bounder:
         if op in (Op.SIN, Op.COS):
             return z, inherited + self._size(z) * (2.0 * SINE_ULPS)
         return z, inherited if self._is_exact(z, args) else inherited + self._size(z)
+
+    def _input(self, place: int) -> Node:
+        return Node(self.graph, self.graph.input(place))
+
+    def _length_error(self, place: int) -> Node:
+        """How far a component of a quaternion may be from that of the unit one; the sum of squares errs by 4 u."""
+        for first in self.quaternions:
+            if first <= place < first + 4:
+                x, y, z, w = (self._input(k) for k in range(first, first + 4))
+                defect = x * x + y * y + z * z + w * w - 1.0
+                return self._size(self._input(place)) * (self._size(defect) * (1.0 / UNIT_ROUNDOFF) + 8.0)
+        return self._constant(0.0)
 
     def _inherited(self, op: Op, args: tuple[int, ...]) -> Node:
         """What the errors of the operands do to the result."""

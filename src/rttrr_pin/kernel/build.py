@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from itertools import accumulate
 
 from rttrr_pin.arithmetic import Arithmetic
 from rttrr_pin.errors import InputError
@@ -17,7 +18,7 @@ from rttrr_pin.kernel.recorder import Recorder
 from rttrr_pin.kernel.schedule import Schedule
 from rttrr_pin.kernel.simplify import simplify
 from rttrr_pin.kernel.trace import KNOWING, TRACING, PayloadSlot, fields, outputs_of, record, trace
-from rttrr_pin.model import Model
+from rttrr_pin.model import JointType, Model
 
 STRAIGHT_LINE = 20_000
 """Operations, as traced, beyond which a program is made of calls: straight lines would take seconds to compile."""
@@ -68,7 +69,15 @@ def _bounded(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlo
     """Values and bounds on their rounding; no inertia is moved between links, which would round it."""
     plain = tuple(dict.fromkeys(name.removesuffix(BOUND) for name in outputs))
     program = simplify(_whole(model, plain, payloads, lumped=False, arithmetic=KNOWING))
-    return with_bounds(in_chains(program, fused), outputs_of(model, outputs))
+    return with_bounds(in_chains(program, fused), outputs_of(model, outputs), _quaternions(model, program))
+
+
+def _quaternions(model: Model, program: Program) -> tuple[int, ...]:
+    """Where each quaternion begins among the inputs, of which q are the first."""
+    if not any(field.name == "q" for field in program.inputs):
+        return ()
+    ends = accumulate(joint.nq for joint in model.moving)
+    return tuple(end - 4 for end, joint in zip(ends, model.moving, strict=True) if joint.type is JointType.FLOATING)
 
 
 def _whole(

@@ -37,7 +37,6 @@ class Ours:
         """Choose by the size of the robot and the number of states to come."""
         links = len(robot.model.links)
         pays = states >= (KERNEL_FROM if links <= SMALL else MANY) and links <= LARGEST
-        pays = pays and robot.model.nq == robot.model.nv  # that a quaternion is not quite unit counts there alone
         outputs = (*COMPUTED, *(f"{name}_bound" for name in COMPUTED))
         self.robot = robot
         self.kernel: Kernel | None = robot.compile(outputs) if pays else None
