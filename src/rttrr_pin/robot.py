@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.arithmetic import FLOAT, Load, evaluate
+from rttrr_pin.arithmetic import FLOAT, Load, bodies, evaluate
 from rttrr_pin.batch import RESULTS, batch_shape, blocks, check_overflow, empty_wrenches, fill, flat
 from rttrr_pin.errors import InputError, NumberError, UnknownNameError
 from rttrr_pin.model import Drive, LinkWrenches, Model, Wrench
@@ -248,9 +248,11 @@ class Robot:
         """The parameters that `regressor` multiplies, (10 links,), ten for each link."""
         from rttrr_pin.kernel.lump import Inertia
 
-        rows, columns = (0, 0, 1, 0, 1, 2), (0, 1, 1, 2, 2, 2)
-        bodies = [Inertia.of(link) for link in self.model.links]
-        return np.concatenate([np.r_[body.m, body.h, body.J[rows, columns]] for body in bodies] or [np.zeros(0)])
+        found: list[float] = []
+        for link in map(Inertia.of, bodies(self.model, FLOAT)):
+            x, y, z = link.J.rows
+            found += [link.m, *link.h, x.x, x.y, y.y, x.z, y.z, z.z]
+        return np.array(found, dtype=np.float64)
 
     def derivatives(
         self, q: Coordinates, v: Coordinates, a: Coordinates, payload: Wrench | Sequence[Wrench] | None = None

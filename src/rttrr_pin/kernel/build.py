@@ -66,9 +66,9 @@ def build(
 
 
 def _bounded(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot], fused: bool) -> Program:
-    """Values and bounds on their rounding; no inertia is moved between links, which would round it."""
+    """Values and bounds on their rounding."""
     plain = tuple(dict.fromkeys(name.removesuffix(BOUND) for name in outputs))
-    program = simplify(_whole(model, plain, payloads, lumped=False, arithmetic=KNOWING))
+    program = simplify(_whole(model, plain, payloads, arithmetic=KNOWING))
     return with_bounds(in_chains(program, fused), outputs_of(model, outputs), _quaternions(model, program))
 
 
@@ -84,12 +84,11 @@ def _whole(
     model: Model,
     outputs: Sequence[str],
     payloads: Sequence[PayloadSlot],
-    lumped: bool = True,
     arithmetic: Arithmetic = TRACING,
 ) -> Program:
     """Straight lines, however long, but no longer than can be compiled."""
     try:
-        return trace(model, outputs, payloads, lumped, LONGEST, arithmetic)
+        return trace(model, outputs, payloads, most=LONGEST, arithmetic=arithmetic)
     except GraphFullError:
         names = [name for name in outputs if not QUANTITIES[name].by_steps] or outputs
         raise InputError(

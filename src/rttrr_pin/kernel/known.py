@@ -12,7 +12,8 @@ class Known(float):
 
     It is a float everywhere else: what is traced on such numbers is traced as on floats. With |x - x_true| <= e_x and
     |y - y_true| <= e_y, fl(x + y) is off by at most e_x + e_y and its own rounding, fl(x y) by at most
-    |x| e_y + |y| e_x + e_x e_y and its own. Rounding is counted only where there is some.
+    |x| e_y + |y| e_x + e_x e_y and its own, fl(x / y) by at most (e_x + |x / y| e_y) / (|y| - e_y) and its own.
+    Rounding is counted only where there is some.
 
     Attributes:
         error: the bound.
@@ -63,6 +64,21 @@ class Known(float):
         return Known(product, abs(x) * error + abs(y) * self.error + self.error * error + rounding)
 
     __rmul__ = __mul__
+
+    def __truediv__(self, other: object) -> Known:
+        if not isinstance(other, int | float):
+            return NotImplemented
+        x, y, error = float(self), float(other), error_of(other)
+        quotient = x / y
+        rounding = 0.0 if is_power_of_two(y) else UNIT_ROUNDOFF * abs(quotient)
+        least = abs(y) - error  # of what is divided by
+        inherited = (self.error + abs(quotient) * error) / least if least > 0.0 else math.inf
+        return Known(quotient, inherited + rounding)
+
+    def __rtruediv__(self, other: object) -> Known:
+        if not isinstance(other, int | float):
+            return NotImplemented
+        return Known(other) / self
 
 
 def error_of(x: float) -> float:

@@ -8,19 +8,23 @@ Where only driving forces are asked for, single links do not matter, and three t
   and Khalil, "Direct calculation of minimum set of inertial parameters of serial robots", 1990).
 - Along a prismatic joint the link turns as its carrier does: the whole tensor about its centre of mass may move.
 
-Inertias are added up as mass, first moment and tensor about a common origin, in float64.
+Inertias are added up as mass, first moment and tensor about a common origin, in the robot's own numbers: floats, or
+such that know their error (`Known`), so that moving inertia counts in the kernel's bounds like any other rounding.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
+from rttrr_pin.algebra import IDENTITY, Matrix, Vector
+from rttrr_pin.joint_motion import Body
+from rttrr_pin.kernel.known import exactly
+from rttrr_pin.model import JointType, Model
 
-from rttrr_pin.model import Joint, JointType, Link, Model
+NOWHERE = Vector(0.0, 0.0, 0.0)
 
-Array = NDArray[np.float64]
+NOTHING = Matrix((NOWHERE, NOWHERE, NOWHERE))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -29,18 +33,18 @@ class Inertia:
 
     Attributes:
         m: mass [kg].
-        h: first moment, mass times centre of mass, (3,) [kg m].
-        J: tensor about the origin, (3, 3) [kg m^2].
+        h: first moment, mass times centre of mass [kg m].
+        J: tensor about the origin [kg m^2].
     """
 
     m: float
-    h: Array
-    J: Array
+    h: Vector
+    J: Matrix
 
     @classmethod
-    def of(cls, link: Link) -> Inertia:
+    def of(cls, body: Body) -> Inertia:
         """That of a link (parallel axes)."""
-        return cls(link.mass, link.mass * link.com, link.inertia + link.mass * _around(link.com))
+        return cls(body.M, body.r_C * body.M, body.I + _around(body.r_C) * body.M)
 
     def __add__(self, other: Inertia) -> Inertia:
         return Inertia(self.m + other.m, self.h + other.h, self.J + other.J)
@@ -48,60 +52,67 @@ class Inertia:
     def __sub__(self, other: Inertia) -> Inertia:
         return Inertia(self.m - other.m, self.h - other.h, self.J - other.J)
 
-    def seen_from(self, R: Array, p: Array) -> Inertia:
+    def seen_from(self, R: Matrix, p: Vector) -> Inertia:
         """The same body in a frame in which this one stands at p, turned by R."""
         h, J = R @ self.h, R @ self.J @ R.T
-        shift = np.dot(h, p) * 2 * np.eye(3) - np.outer(h, p) - np.outer(p, h) + self.m * _around(p)
-        return Inertia(self.m, h + self.m * p, J + shift)
+        shift = IDENTITY * (h.dot(p) * 2) - Matrix.outer(h, p) - Matrix.outer(p, h) + _around(p) * self.m
+        return Inertia(self.m, h + p * self.m, J + shift)
 
-    def as_link(self, link: Link) -> Link:
-        """The link with this inertia, about the centre of mass again."""
+    def about_com(self) -> tuple[Vector, Matrix]:
+        """The centre of mass, and the tensor about it; those of the origin where there is no mass."""
         if self.m == 0.0:
-            return replace(link, mass=0.0, com=np.zeros(3), inertia=_symmetric(self.J))
-        com = self.h / self.m
-        return replace(link, mass=self.m, com=com, inertia=_symmetric(self.J - self.m * _around(com)))
+            return NOWHERE, self.J
+        com = Vector(*(x / self.m for x in self.h))
+        return com, self.J - _around(com) * self.m
+
+    def as_body(self, body: Body) -> Body:
+        """The link with this inertia."""
+        com, tensor = self.about_com()
+        return replace(body, M=self.m, r_C=com, I=(tensor + tensor.T) * 0.5)
 
 
-def lump(model: Model) -> Model:
+def lump(model: Model, links: Sequence[Body]) -> tuple[Model, list[Body]]:
     """The robot with the same driving forces at every motion, and fewer numbers that are not zero.
 
     Args:
         model: the robot.
+        links: its links and joints, as scalars that are floats.
 
     Returns:
-        A robot with as many links and joints, in the same order. Its single links are no longer those of the file.
+        As many links and joints, in the same order: the tree, in which no joint stands on a fixed one, and its links,
+        which single are no longer those of the file. The numbers in the model are, and are not to be used.
     """
-    model = _carried_by_moving_links(model)
-    links = list(model.links)
-    for i in reversed(range(len(links))):
-        joint = model.joints[i]
-        carrier = links[joint.parent] if joint.parent >= 0 else None
-        moved = _movable(joint, links[i], carrier)
+    model, bodies = _carried_by_moving_links(model, list(links))
+    for i in reversed(range(len(bodies))):
+        parent = model.joints[i].parent
+        carrier = bodies[parent] if parent >= 0 else None
+        moved = _movable(bodies[i], carrier)
         if moved is None:
             continue
-        links[i] = _without(links[i], moved, joint)
+        R, p = bodies[i].R, bodies[i].p
+        bodies[i] = _without(bodies[i], moved)
         if carrier is not None:
-            links[joint.parent] = (Inertia.of(carrier) + moved.seen_from(joint.R, joint.p)).as_link(carrier)
-    return replace(model, links=tuple(links))
+            bodies[parent] = (Inertia.of(carrier) + moved.seen_from(R, p)).as_body(carrier)
+    return model, bodies
 
 
-def _carried_by_moving_links(model: Model) -> Model:
+def _carried_by_moving_links(model: Model, bodies: list[Body]) -> tuple[Model, list[Body]]:
     """Joints on fixed links moved to the links that carry those, with their inertia."""
-    joints, links = list(model.joints), list(model.links)
+    joints = list(model.joints)
     for i, joint in enumerate(joints):
-        parent = joints[joint.parent] if joint.parent >= 0 else None
-        if parent is not None and parent.type is JointType.FIXED:
-            joints[i] = replace(
-                joint, parent=parent.parent, R=parent.R @ joint.R, p=parent.p + parent.R @ joint.p, rotated=True
-            )
+        at, body = joint.parent, bodies[i]
+        if at >= 0 and joints[at].type is JointType.FIXED:
+            R, p = bodies[at].R, bodies[at].p
+            joints[i] = replace(joint, parent=joints[at].parent)
+            bodies[i] = replace(body, R=R @ body.R, p=p + R @ body.p)
     for i in reversed(range(len(joints))):
-        joint = joints[i]
-        if joint.type is JointType.FIXED and (links[i].mass != 0.0 or links[i].inertia.any()):
-            inertia = Inertia.of(links[i]).seen_from(joint.R, joint.p)
-            if joint.parent >= 0:
-                links[joint.parent] = (Inertia.of(links[joint.parent]) + inertia).as_link(links[joint.parent])
-            links[i] = replace(links[i], mass=0.0, com=np.zeros(3), inertia=np.zeros((3, 3)))
-    return replace(model, joints=tuple(joints), links=tuple(links))
+        parent, body = joints[i].parent, bodies[i]
+        if body.type is JointType.FIXED and (body.M != 0.0 or not _zero(body.I)):
+            if parent >= 0:
+                seen = Inertia.of(body).seen_from(body.R, body.p)
+                bodies[parent] = (Inertia.of(bodies[parent]) + seen).as_body(bodies[parent])
+            bodies[i] = replace(body, M=0.0, r_C=NOWHERE, I=NOTHING)
+    return replace(model, joints=tuple(joints)), bodies
 
 
 LIGHT = 1 / 16
@@ -109,47 +120,55 @@ LIGHT = 1 / 16
 put its centre of mass far away, where its tensor drowns; without mass it has none."""
 
 
-def _movable(joint: Joint, link: Link, carrier: Link | None) -> Inertia | None:
+def _movable(body: Body, carrier: Body | None) -> Inertia | None:
     """What of a link's inertia may belong to its carrier; None for the root, which keeps nothing."""
-    if joint.type is JointType.PRISMATIC:
-        return Inertia(0.0, np.zeros(3), link.inertia)
-    if not joint.type.rotates or link.mass == 0.0:
+    if body.type is JointType.PRISMATIC:
+        return Inertia(0.0, NOWHERE, body.I)
+    if not body.type.rotates or body.M == 0.0:
         return None
-    u = joint.axis
-    on_axis = not (link.com - float(u @ link.com) * u).any()
-    heavy = carrier is None or on_axis or carrier.mass >= LIGHT * link.mass
-    along = float(u @ link.com) * link.mass * u if heavy else np.zeros(3)
-    centred = Inertia.of(link) - Inertia(0.0, along, np.zeros((3, 3)))
-    k = int(np.argmin(np.abs(u)))  # the entry to become zero
-    tensor = centred.J if on_axis else _about_com(centred)
-    d = tensor[k, k] / (1.0 - u[k] ** 2)
-    return Inertia(link.mass if on_axis else 0.0, along, d * (np.eye(3) - np.outer(u, u)))
+    u = body.axis
+    distance = u.dot(body.r_C)
+    on_axis = all(exactly(x, 0.0) for x in body.r_C - u * distance)
+    heavy = carrier is None or on_axis or carrier.M >= LIGHT * body.M
+    along = u * (distance * body.M) if heavy else NOWHERE
+    centred = Inertia.of(body) - Inertia(0.0, along, NOTHING)
+    k = _across(u)
+    tensor = centred.J if on_axis else centred.about_com()[1]
+    d = _entry(tensor, k) / (1.0 - [*u][k] * [*u][k])
+    return Inertia(body.M if on_axis else 0.0, along, (IDENTITY - Matrix.outer(u, u)) * d)
 
 
-def _about_com(inertia: Inertia) -> Array:
-    com = inertia.h / inertia.m
-    tensor: Array = inertia.J - inertia.m * _around(com)
-    return tensor
-
-
-def _without(link: Link, moved: Inertia, joint: Joint) -> Link:
+def _without(body: Body, moved: Inertia) -> Body:
     """What is left of a link; what was to become zero is zero and no rounding."""
-    rest = (Inertia.of(link) - moved).as_link(link)
-    if joint.type is JointType.PRISMATIC:
-        return replace(link, inertia=np.zeros((3, 3)))
-    k = int(np.argmin(np.abs(joint.axis)))
-    inertia, com = rest.inertia.copy(), rest.com.copy()
-    inertia[k, k] = 0.0
-    if moved.h.any() and np.count_nonzero(joint.axis) == 1:
-        com[np.argmax(np.abs(joint.axis))] = 0.0
-    return replace(rest, inertia=inertia, com=com)
+    if body.type is JointType.PRISMATIC:
+        return replace(body, I=NOTHING)
+    rest = (Inertia.of(body) - moved).as_body(body)
+    k = _across(body.axis)
+    rows = [[*row] for row in rest.I.rows]
+    rows[k][k] = 0.0
+    com = [*rest.r_C]
+    if any(moved.h) and sum(x != 0.0 for x in body.axis) == 1:
+        com = [0.0 if x != 0.0 else y for x, y in zip(body.axis, com, strict=True)]
+    a, b, c = (Vector(*row) for row in rows)
+    return replace(rest, r_C=Vector(*com), I=Matrix((a, b, c)))
 
 
-def _around(r: Array) -> Array:
+def _across(u: Vector) -> int:
+    """The coordinate axis that is most across an axis: its entry in the tensor is to become zero."""
+    return min(range(3), key=lambda k: abs([*u][k]))
+
+
+def _entry(tensor: Matrix, k: int) -> float:
+    """An entry of the diagonal."""
+    entry: float = [*tensor.rows[k]][k]
+    return entry
+
+
+def _around(r: Vector) -> Matrix:
     """The tensor about the origin of a mass of 1 kg at r: r^2 1 - r r^T."""
-    tensor: Array = np.dot(r, r) * np.eye(3) - np.outer(r, r)
+    tensor: Matrix = IDENTITY * r.dot(r) - Matrix.outer(r, r)
     return tensor
 
 
-def _symmetric(tensor: Array) -> Array:
-    return (tensor + tensor.T) / 2
+def _zero(tensor: Matrix) -> bool:
+    return not any(x != 0.0 for row in tensor.rows for x in row)

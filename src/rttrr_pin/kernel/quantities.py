@@ -25,7 +25,15 @@ INERTIAL_PARAMETERS = ("m", "mx", "my", "mz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz",
 
 @dataclass(frozen=True)
 class Motion:
-    """A robot in motion, in scalars of one kind; what a quantity does not need is empty."""
+    """A robot in motion, in scalars of one kind; what a quantity does not need is empty.
+
+    Attributes:
+        model: the robot.
+        arithmetic: the kind of scalar.
+        q, v, a: coordinates, rates, accelerations.
+        payloads: what the robot exerts on its surroundings.
+        links: to take instead of the model's own; None for those.
+    """
 
     model: Model
     arithmetic: Arithmetic
@@ -33,11 +41,12 @@ class Motion:
     v: Sequence[Scalar] = ()
     a: Sequence[Scalar] = ()
     payloads: Sequence[Payload] = ()
+    links: Sequence[Body] | None = None
 
     @cached_property
     def result(self) -> Result:
         """The five quantities."""
-        return dynamics(self.model, self.arithmetic, self.q, self.v, self.a, self.payloads)
+        return dynamics(self.model, self.arithmetic, self.q, self.v, self.a, self.payloads, self.links)
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,7 +83,7 @@ def _of_links(name: str) -> Quantity:
 def _force_at(motion: Motion, v: Sequence[Scalar], a: Sequence[Scalar], gravity: bool = True) -> list[Scalar]:
     """The driving forces at other rates and accelerations."""
     model = motion.model if gravity else motion.model.with_gravity(np.zeros(3))
-    return dynamics(model, motion.arithmetic, motion.q, v, a).tau
+    return dynamics(model, motion.arithmetic, motion.q, v, a, links=motion.links).tau
 
 
 def _mass_matrix(motion: Motion) -> list[Scalar]:
@@ -122,7 +131,8 @@ def _derivatives(by: str) -> Quantity:
         moved = {name: getattr(motion, name) for name in "qva"}
         seed = tangent if by == "q" else _plain
         moved[by] = seed(motion.model.moving, moved[by], motion.arithmetic)
-        tau = dynamics(motion.model, over_duals(motion.arithmetic), **moved, payloads=motion.payloads).tau
+        arithmetic = over_duals(motion.arithmetic)
+        tau = dynamics(motion.model, arithmetic, **moved, payloads=motion.payloads, links=motion.links).tau
         return [part_of(row, k) for row in tau for k in range(n)]
 
     return Quantity("qva", lambda model: (model.nv, model.nv), scalars, payload=True, by_steps=False)
@@ -161,7 +171,7 @@ BOUND = "_bound"
 
 def _bound_of(quantity: Quantity) -> Quantity:
     """A bound on the rounding of a quantity: `bounds.with_bounds` makes it from the quantity's own operations."""
-    return replace(quantity, of_links=True, by_steps=False)
+    return replace(quantity, by_steps=False)
 
 
 QUANTITIES |= {name + BOUND: _bound_of(quantity) for name, quantity in QUANTITIES.items()}

@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from rttrr_pin.algebra import Scalar, Vector
-from rttrr_pin.arithmetic import Arithmetic
+from rttrr_pin.arithmetic import Arithmetic, bodies
+from rttrr_pin.joint_motion import Body
 from rttrr_pin.kernel.expression import Graph, Node, Op
 from rttrr_pin.kernel.known import Known
 from rttrr_pin.kernel.lump import lump
@@ -81,8 +82,9 @@ def record(
         The nodes of the outputs' numbers.
     """
     wanted = [QUANTITIES[name] for name in outputs]
+    links: Sequence[Body] | None = None
     if lumped and not any(quantity.of_links for quantity in wanted):
-        model = lump(model)
+        model, links = lump(model, bodies(model, arithmetic))
     inputs = fields(model, outputs, payloads)
     columns = (Node(graph, graph.input(place)) for place in range(sum(field.width for field in inputs)))
     given = {field.name: [next(columns) for _ in range(field.width)] for field in inputs}
@@ -96,6 +98,7 @@ def record(
             Payload(slot.link, Vector(*given[f"payload_{k}_f"]), Vector(*given[f"payload_{k}_n"]), slot.in_base)
             for k, slot in enumerate(payloads)
         ],
+        links=links,
     )
     return tuple(_number(graph, scalar) for quantity in wanted for scalar in quantity.scalars(motion))
 
