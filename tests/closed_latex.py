@@ -13,19 +13,19 @@ ENVIRONMENT = re.compile(r"\\begin\{(?:align\*|aligned)\}\n(.*?)\\end\{(?:align\
 def printed_lines(text: str) -> list[str]:
     """The lines of all aligned environments."""
     lines = [line for body in ENVIRONMENT.findall(text) for line in body.rstrip().split("\n")]
-    return [line.removesuffix(r"\\").rstrip() for line in lines]
+    return [re.sub(r" \\\\(\[1ex\])?$", "", line) for line in lines]
 
 
 def equations(text: str) -> list[tuple[str, str]]:
     """Name and right-hand side of each equation, in order."""
     found: list[list[str]] = []
     for line in printed_lines(text):
-        name, equals, rest = line.partition(" ={}& ")
+        name, equals, rest = line.replace(r"& \quad ", "& ").partition(" ={}& ")
         if equals:
             found.append([name, rest])
         else:
-            assert re.match(r"& [+-] ", line), f"a line goes on without + or -: {line}"
-            found[-1][1] += line.removeprefix("&")
+            assert re.match(r"& [+-] ", name), f"a line goes on without + or -: {line}"
+            found[-1][1] += name.removeprefix("&")
     return [(name, side) for name, side in found]
 
 

@@ -10,6 +10,7 @@ from fractions import Fraction
 from functools import cache
 from pathlib import Path
 from typing import Any
+from xml.sax.saxutils import quoteattr
 
 import numpy as np
 import pinocchio as pin
@@ -18,6 +19,7 @@ import pytest
 import closed_latex
 import rttrr_pin
 from chains import EXAMPLES, random_chain
+from pdflatex import compiled
 from rttrr_pin import Drive, Robot, Wrench, symbolic
 from rttrr_pin.arithmetic import Load
 from rttrr_pin.cli import main
@@ -25,6 +27,9 @@ from rttrr_pin.kernel.emit.c import compiler
 from rttrr_pin.model import Joint, JointType, Link, Mimic, Model
 from rttrr_pin.oracles import make_oracle
 from rttrr_pin.report.closed import WRITERS, mathematics
+from rttrr_pin.report.closed.printing import Notation
+from rttrr_pin.report.closed.printing import lines as lines_of
+from rttrr_pin.report.closed.printing import text as text_of
 from rttrr_pin.symbolic import forms
 from rttrr_pin.symbolic.collect import Presenter
 from rttrr_pin.symbolic.derivation import closed_forms
@@ -241,6 +246,64 @@ def test_a_robot_without_symbols_has_no_table_of_them() -> None:
     still = symbolic.derive(rttrr_pin.load(EXAMPLES["no-joint"]), ["N", "M"], letters=symbolic.Letters())
     assert r"\begin{longtable}" not in WRITERS["latex"](still)
     assert r"\begin{longtable}" in written(CASES[0], "latex")
+
+
+STRANGE = {
+    "joint_0": "Gelenk_für 100% #1 & Co",
+    "joint_1": "ŁĦθ関節--{x}$y^2~\\\\input{z}",
+    "link_0": "arm_" * 20,
+    "link_1": '<größe>|"Σ/1"',
+}
+"""Names of a robot's file that mean something to TeX, or that its fonts have no letters for."""
+
+
+@cache
+def strangely_named() -> symbolic.Derivation:
+    text = random_tree(12, 5, ONE_AXIS).replace('name="tree_12"', 'name="Größe_1 50% #&amp;"')
+    for name, strange in STRANGE.items():
+        text = text.replace(f'"{name}"', quoteattr(strange))
+    return symbolic.derive(rttrr_pin.load(text).model, ALL, "stepwise")
+
+
+DOCUMENTS = {
+    "rttrr": lambda: derived("rttrr", "auto", "letters"),
+    "numbers": lambda: derived("two-joints", "expanded", "numbers"),
+    "any-axes": lambda: derived("any-axes", "auto", "letters"),
+    "strange names": strangely_named,
+}
+
+
+@pytest.mark.tex
+@pytest.mark.parametrize("case", DOCUMENTS)
+def test_the_document_compiles_and_fits_its_pages(case: str, tmp_path: Path) -> None:
+    """A page has some 45 lines of formulas, less where one equation ends and the next begins."""
+    text = WRITERS["latex"](DOCUMENTS[case](), "What `--latex FILE` writes.")
+    found = compiled(text, tmp_path)
+    assert max(found.overfull, default=0.0) < 3.0
+    assert text.count("\n") / 60 < found.pages < text.count("\n") / 35 + 2
+
+
+def test_names_from_a_file_stand_in_every_document() -> None:
+    """Letters of any alphabet are kept; what could end a comment, or begin a command, is not."""
+    for language, writer in WRITERS.items():
+        text = writer(strangely_named())
+        assert "für 100" in text and "関節" in text and "größe" in text, language
+        assert r"\input{z}" not in text and "{x}" not in text, language
+    assert r"Gelenk\_\allowbreak{}für 100\% \#1 \& Co" in WRITERS["latex"](strangely_named())
+
+
+def test_a_line_ends_where_few_brackets_are_open() -> None:
+    notation = Notation(str, lambda name, power: name, "*", len, "  ")
+    one = lambda *factors: Product(Fraction(1), tuple(Power(x, 1) if isinstance(x, str) else x for x in factors))
+    long, short = (Sum(tuple(one(letter) for letter in letters)) for letters in ("bcdef", "hijk"))
+    expression = Sum((one("g", Sum((one("M", long), one("N", short)))),))
+    whole = "g*(M*(b + c + d + e + f) + N*(h + i + j + k))"
+    assert text_of(expression, notation) == whole
+    assert lines_of(expression, notation, 34) == ["g*(M*(b + c + d + e + f)", "  + N*(h + i + j + k))"]
+    for room in range(10, 50):
+        found = lines_of(expression, notation, room)
+        assert all(len(line) <= room for line in found)
+        assert " ".join(line.strip() for line in found) == whole
 
 
 def test_blocks_of_markdown_are_short_enough_to_render() -> None:

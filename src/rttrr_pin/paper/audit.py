@@ -14,7 +14,7 @@ from rttrr_pin.paper.form import expansions, folded, in_printed_form, sum_symbol
 from rttrr_pin.paper.match import Numeral, Pair, as_terms, corrected, match
 from rttrr_pin.paper.printed import PrintedComponent, PrintedTerm, Split
 from rttrr_pin.paper.publication import DEFINITION, Convention, Equation, Publication
-from rttrr_pin.paper.text import in_language, spelled
+from rttrr_pin.paper.text import Writing, in_language, spelled
 from rttrr_pin.paper.verdicts import Audit, ComponentAudit, ConventionCheck, Verdict
 from rttrr_pin.symbolic.derivation import ClosedForms, closed_forms
 from rttrr_pin.symbolic.ring import Polynomial, Ring
@@ -195,23 +195,38 @@ class Auditor:
         )  # fmt: skip
         if paired.component.unparsed:
             return head
-        letters = spelled(ring.symbols, self.publication.spellings, self.publication.language)
-        writing = partial(in_language, self.publication.language, symbols=letters)
+        slips = any(pair.kinds for pair in paired.pairs)
+        right = corrected(paired.pairs) if slips else [(_numeral(pair), False) for pair in paired.pairs]
+        numerals = [numeral for numeral, _ in right]
+        writing, proven = self._writing(equation, k, paired, numerals)
         findings = findings_of(
             name, paired.pairs, terms, ring.symbols, dimension_of(self.robot.model, equation), writing
         )
         quiet = [pair.reading.note for pair in paired.pairs if pair.reading and pair.reading.note and not pair.kinds]
-        right = corrected(paired.pairs) if findings else [(_numeral(pair), False) for pair in paired.pairs]
-        texts = writing([numeral for numeral, _ in right])
         return replace(
             head,
             verdict=Verdict.DIFFERS if findings else Verdict.MATCH,
             findings=findings,
             notes=(*head.notes, *quiet),
-            corrected=tuple(zip(texts, (changed for _, changed in right), strict=True)),
-            proven=self._proven(equation, k, paired, texts),
-            evidence=self._evidence(equation, k, paired, [numeral for numeral, _ in right]),
+            corrected=tuple(zip(writing(numerals), (changed for _, changed in right), strict=True)),
+            proven=proven,
+            evidence=self._evidence(equation, k, paired, numerals),
         )
+
+    def _writing(self, equation: Equation, k: int, paired: Paired, right: list[Numeral]) -> tuple[Writing, bool]:
+        """What writes as the text does, and whether the right terms can be read again; if not, as the tables do."""
+        own = dict(paired.component.spellings)
+        used = own | {name: x for name, x in self.publication.notation.items() if name not in own}
+        like_text, like_tables = (self._in_letters(paired.ring, spellings) for spellings in (used, {}))
+        if self._proven(equation, k, paired, like_text(right)):
+            return like_text, True
+        return like_tables, self._proven(equation, k, paired, like_tables(right))
+
+    def _in_letters(self, ring: Ring, used: Mapping[str, str]) -> Writing:
+        """What writes terms, with these spellings of the text before those of its tables."""
+        language = self.publication.language
+        letters = spelled(ring.symbols, self.publication.spellings, language, used)
+        return partial(in_language, language, symbols=letters)
 
     def _proven(self, equation: Equation, k: int, paired: Paired, texts: list[str]) -> bool:
         """Whether the corrected text, read as the published one was, is the derived polynomial."""

@@ -46,11 +46,13 @@ class PrintedComponent:
         text: as printed.
         terms: its terms in printed order; empty where it could not be read.
         unparsed: why it could not be read, with the place; empty where it could.
+        spellings: names of symbols, each with the spelling that it has where it is printed first.
     """
 
     text: str
     terms: tuple[PrintedTerm, ...]
     unparsed: str = ""
+    spellings: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

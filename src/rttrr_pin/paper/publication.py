@@ -111,8 +111,28 @@ class Publication:
         """The spellings as the LaTeX reader looks them up."""
         return Vocabulary(self.spellings)
 
+    @cached_property
+    def notation(self) -> Mapping[str, str]:
+        """How the text spells each symbol that it has, by name: as it is printed first."""
+        found: dict[str, str] = {}
+        for equation in self.equations:
+            components = self.read(equation)[0].components if equation.quantity != DEFINITION else ()
+            for name, spelling in (pair for component in components for pair in component.spellings):
+                found.setdefault(name, spelling)
+        return found
+
+    @cached_property
+    def _done(self) -> dict[Equation, tuple[Split, ...]]:
+        """What has been read."""
+        return {}
+
     def read(self, equation: Equation) -> tuple[Split, ...]:
         """The terms of an equation; several ways where its text does not show where components end."""
+        if equation not in self._done:
+            self._done[equation] = self._read(equation)
+        return self._done[equation]
+
+    def _read(self, equation: Equation) -> tuple[Split, ...]:
         count = max(1, len(equation.components))
         if self.language == "latex" and len(equation.texts) == 1:
             return read_latex(equation.texts[0], self.vocabulary, count)

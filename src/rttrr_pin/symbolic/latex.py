@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
-from rttrr_pin.symbolic.symbols import Factors, Role, Symbol
+from rttrr_pin.symbolic.symbols import MASS, Factors, Role, Symbol
 
 ORDER: Mapping[Role, int] = {
     Role.STEP: 1,
@@ -22,6 +23,9 @@ ORDER: Mapping[Role, int] = {
 }
 """Where in a product symbols of each role stand; masses come before everything else."""
 
+FUNCTION = re.compile(r"(\\(cos|sin)(?![A-Za-z])|\\(mathrm|operatorname|text)\s*\{\w+\}|[csCS])(?!\s*_)")
+"""A sine or cosine whose angle stands behind it; s_2 is a symbol with an index."""
+
 
 def latex_number(x: Fraction) -> str:
     """A number without its sign: whole, a fraction of small numbers, or a decimal that rounds to the same double."""
@@ -36,20 +40,21 @@ def latex_number(x: Fraction) -> str:
 
 
 def latex_power(symbol: Symbol, power: int) -> str:
-    """A symbol to a power, the power of a sine or cosine behind its letter: c^2q_5."""
+    r"""A symbol to a power; that of a sine or cosine before its angle, c^2q_5 or \cos^2 q_5, but s_5^2."""
     if power == 1:
         return symbol.latex
-    if symbol.role in (Role.SINE, Role.COSINE) and "_{" not in symbol.latex[:3]:
-        return f"{symbol.latex[0]}^{power}{symbol.latex[1:]}"
+    raised = f"^{power}" if power < 10 else f"^{{{power}}}"
+    function = FUNCTION.match(symbol.latex) if symbol.role in (Role.SINE, Role.COSINE) else None
+    if function:
+        return function[0] + raised + symbol.latex[function.end() :]
     if "^" in symbol.latex.removeprefix("{}^"):
-        return rf"\left({symbol.latex}\right)^{power}"
-    return f"{symbol.latex}^{power}"
+        return rf"\left({symbol.latex}\right){raised}"
+    return symbol.latex + raised
 
 
 def latex_product(coefficient: Fraction, factors: Factors, symbols: Mapping[str, Symbol]) -> str:
     """A term without its sign."""
-    ordered = sorted(factors, key=lambda factor: _order(symbols[factor[0]]))
-    parts = [latex_power(symbols[name], power) for name, power in ordered]
+    parts = [latex_power(symbols[name], power) for name, power in in_order(factors, symbols)]
     number = latex_number(coefficient)
     if number != "1" or not parts:
         parts.insert(0, number)
@@ -64,5 +69,11 @@ def latex_sum(terms: Iterable[tuple[Fraction, Factors]], symbols: Mapping[str, S
     return [texts[0].removeprefix("+ "), *texts[1:]]
 
 
-def _order(symbol: Symbol) -> tuple[bool, int, str]:
-    return not symbol.latex.startswith("M"), ORDER[symbol.role], symbol.name
+def in_order(factors: Factors, symbols: Mapping[str, Symbol]) -> Factors:
+    """The factors of a product as people write them: masses, other letters, cosines, sines, what moves."""
+
+    def place(factor: tuple[str, int]) -> tuple[bool, int, str]:
+        symbol = symbols[factor[0]]
+        return symbol.dimension != MASS, ORDER[symbol.role], symbol.name
+
+    return tuple(sorted(factors, key=place))

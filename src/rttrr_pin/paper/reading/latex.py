@@ -5,6 +5,7 @@ from __future__ import annotations
 from rttrr_pin.paper.printed import PrintedComponent, Split
 from rttrr_pin.paper.reading.grammar import UnreadableError, parse
 from rttrr_pin.paper.reading.layout import Part, layouts
+from rttrr_pin.paper.reading.notation import spellings_of
 from rttrr_pin.paper.reading.products import terms_of
 from rttrr_pin.paper.reading.trees import products_of
 from rttrr_pin.paper.reading.vocabulary import Vocabulary
@@ -38,7 +39,8 @@ def _component(part: Part, vocabulary: Vocabulary, text: str) -> PrintedComponen
         if part.fault is not None:
             raise part.fault
         products = products_of(parse(part.tokens, part.end))
-        return PrintedComponent(printed, terms_of(products, vocabulary, text))
+        terms = terms_of(products, vocabulary, text)
+        return PrintedComponent(printed, terms, spellings=spellings_of(products, vocabulary, text))
     except UnreadableError as error:
         return PrintedComponent(printed, (), error.placed(text))
     except RecursionError:

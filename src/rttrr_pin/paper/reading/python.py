@@ -44,7 +44,8 @@ def read_python(text: str, names: Mapping[str, str]) -> PrintedComponent:
     known = {_variable(key): name for key, name in names.items()}
     try:
         tree, places = _parsed(text)
-        return PrintedComponent(printed, _Expression(text, places, known).terms(tree))
+        expression = _Expression(text, places, known)
+        return PrintedComponent(printed, expression.terms(tree), spellings=expression.spellings(tree))
     except UnreadableError as error:
         return PrintedComponent(printed, (), error.placed(text))
     except (RecursionError, MemoryError):
@@ -164,9 +165,35 @@ class _Expression:
             raise self.fault(f"only numbers may {what}", node)
         return sum((term.readings[0].coefficient for term in terms), Fraction(0))
 
+    def spellings(self, tree: ast.expr) -> tuple[tuple[str, str], ...]:
+        """Each known symbol by its name, as it is spelled first."""
+        found: dict[str, str] = {}
+        nodes = [node for node in ast.walk(tree) if isinstance(node, SymbolNode | ast.Call)]
+        for node in sorted(nodes, key=self.places.start):
+            name = self.angle(node) if isinstance(node, ast.Call) else self.known.get(ast.unparse(node))
+            if name is not None:
+                found.setdefault(name, ast.unparse(node))
+        return tuple(found.items())
+
     def index(self, node: ast.expr) -> int | None:
         """The index of the coordinate that a variable is."""
         return index_of(self.known.get(ast.unparse(node), "")) if isinstance(node, SymbolNode) else None
+
+    def angle(self, node: ast.Call) -> str:
+        """The name of a sine or cosine."""
+        called = node.func.attr if isinstance(node.func, ast.Attribute) else ast.unparse(node.func)
+        if called not in FUNCTIONS or len(node.args) != 1 or node.keywords:
+            raise self.fault("the only functions are sin and cos of one angle; write it out", node)
+        argument = node.args[0]
+        indices: list[int | None] = []
+        while isinstance(argument, ast.BinOp) and isinstance(argument.op, ast.Add):
+            indices.append(self.index(argument.right))
+            argument = argument.left
+        indices.append(self.index(argument))
+        found = {index for index in indices if index is not None}
+        if len(found) < len(indices):
+            raise self.fault("the angle is wanted as a coordinate or a sum of coordinates", node.args[0])
+        return angle_name(FUNCTIONS[called], found)
 
 
 @dataclass(slots=True)
@@ -206,7 +233,7 @@ class _Product:
             case ast.BinOp(op=ast.Pow(), left=base, right=exponent):
                 self.multiply(base, self._checked(power * self._power(exponent), exponent))
             case ast.Call():
-                self.exponents[self._angle(node)] += power
+                self.exponents[self.expression.angle(node)] += power
             case ast.Name() | ast.Attribute() | ast.Subscript():
                 self._symbol(ast.unparse(node), power)
             case _:
@@ -236,21 +263,6 @@ class _Product:
         if power.denominator != 1 or not 0 <= power <= LARGEST_POWER:
             raise self.expression.fault(f"wanted a whole power from 0 to {LARGEST_POWER}, got {power}", node)
         return int(power)
-
-    def _angle(self, node: ast.Call) -> str:
-        called = node.func.attr if isinstance(node.func, ast.Attribute) else ast.unparse(node.func)
-        if called not in FUNCTIONS or len(node.args) != 1 or node.keywords:
-            raise self.expression.fault("the only functions are sin and cos of one angle; write it out", node)
-        argument = node.args[0]
-        indices: list[int | None] = []
-        while isinstance(argument, ast.BinOp) and isinstance(argument.op, ast.Add):
-            indices.append(self.expression.index(argument.right))
-            argument = argument.left
-        indices.append(self.expression.index(argument))
-        found = {index for index in indices if index is not None}
-        if len(found) < len(indices):
-            raise self.expression.fault("the angle is wanted as a coordinate or a sum of coordinates", node.args[0])
-        return angle_name(FUNCTIONS[called], found)
 
     def _symbol(self, variable: str, power: int) -> None:
         name = self.expression.known.get(variable)

@@ -21,6 +21,7 @@ EM = {
     **dict.fromkeys([r"\dot", r"\ddot", r"\mathrm", r"\left", r"\right"], 0.0),
     **dict.fromkeys("{} &", 0.0),
     r"\cdot": 0.73,
+    r"\quad": 1.0,
     "+": 1.23,
     "-": 1.23,
     "(": 0.39,
@@ -55,7 +56,7 @@ class Equation:
 
 def notation(symbols: Mapping[str, Symbol]) -> Notation:
     """The notation of formulas in these symbols."""
-    return Notation(number, lambda name, power: raised(symbols[name], power), r" \cdot ", width)
+    return Notation(number, lambda name, power: raised(symbols[name], power), r" \cdot ", width, r"\quad ")
 
 
 def number(x: Fraction) -> str:

@@ -70,7 +70,7 @@ class Language:
     @property
     def notation(self) -> Notation:
         """Of expressions."""
-        return Notation(lambda x: repr(float(x)), self.power, " * ", len)
+        return Notation(lambda x: repr(float(x)), self.power, " * ", len, "    ")
 
     def expression(self, expression: Sum, room: int) -> list[str]:
         """An expression in lines that fit."""

@@ -22,11 +22,12 @@ TITLES = {
 """Headings of the quantities."""
 
 STEPS = "Steps"
+STEPS_MEANING = "What is named on the way, in the order in which it is needed."
 
 
 def plain(name: str) -> str:
-    """A name from a file that may stand in any document, comment or docstring."""
-    return re.sub(r"[^\w .,:()+-]", "?", name, flags=re.ASCII)
+    """A name from a file that may stand in any document, comment or docstring; LaTeX escapes its own signs."""
+    return re.sub(r"[^\w .,:()+/#%&-]", "?", name)
 
 
 def conventions(derivation: Derivation) -> Iterator[str]:

@@ -18,42 +18,26 @@ from rttrr_pin.report.errata.sheet import (
     program,
     written,
 )
+from rttrr_pin.report.tex import code, document, escaped
 
-PREAMBLE = r"""\documentclass[a4paper,10pt]{article}
-\usepackage{iftex}
-\ifpdftex\usepackage[T1]{fontenc}\fi
-\IfFileExists{lmodern.sty}{\usepackage{lmodern}}{}
-\usepackage[margin=20mm]{geometry}
-\usepackage{amsmath}
-\usepackage{array,booktabs,longtable}
-\usepackage{xcolor}
-\setlength{\parindent}{0pt}
-\setlength{\parskip}{6pt}
+PREAMBLE = r"""\usepackage{xcolor}
 \setlength{\fboxsep}{1.5pt}
 \newcommand{\term}[1]{\mbox{$#1$}}
 \newcommand{\changed}[1]{\colorbox{yellow!60}{\boldmath$#1$}}
 \newcommand{\thinspaceorbreak}{\,\allowbreak}
 """
 
-SIGNS = {
-    "\\": r"\textbackslash{}", "{": r"\{", "}": r"\}", "$": r"\$", "&": r"\&", "#": r"\#", "%": r"\%", "_": r"\_",
-    "^": r"\textasciicircum{}", "`": r"\textasciigrave{}", "~": r"\textasciitilde{}",
-    "<": r"\textless{}", ">": r"\textgreater{}", "|": r"\textbar{}", '"': r"''",
-}  # fmt: skip
-"""What stands for signs that mean something to TeX."""
-
 
 def latex(sheet: Sheet) -> str:
     """The sheet as a LaTeX document."""
     body = "\n\n".join(_block(block) for block in sheet.blocks)
-    title = f"{{\\raggedright\\LARGE\\bfseries {_escaped(sheet.title)}\\par}}"
-    return f"{PREAMBLE}\\begin{{document}}\n{title}\n\n{body}\n\n\\end{{document}}\n"
+    return document(PREAMBLE, f"{{\\raggedright\\LARGE\\bfseries {escaped(sheet.title)}\\par}}\n\n{body}")
 
 
 def _block(block: Block) -> str:
     match block:
         case Heading(text, level):
-            return rf"\{'sub' * (level - 1)}section*{{{_escaped(text)}}}"
+            return rf"\{'sub' * (level - 1)}section*{{{escaped(text)}}}"
         case Paragraph(line):
             return _line(line)
         case Bullets(lines):
@@ -69,7 +53,7 @@ def _table(table: Table) -> str:
     columns = "".join(
         rf">{{\raggedright\arraybackslash}}p{{{width - 0.02:.3f}\textwidth}}" for width in table.widths
     ) or "l" * len(table.heads)
-    head = " & ".join(_escaped(text) for text in table.heads)
+    head = " & ".join(escaped(text) for text in table.heads)
     rows = "\n".join(" & ".join(_line(cell) for cell in row) + r" \\" for row in table.rows)
     return (
         f"{{\\small\\setlength{{\\LTleft}}{{0pt}}\\setlength{{\\tabcolsep}}{{0.01\\textwidth}}\n"
@@ -83,18 +67,13 @@ def _line(line: Line) -> str:
 
 
 def _words(words: Words) -> str:
-    text = _escaped(words.text)
+    text = escaped(words.text)
     return rf"\textbf{{{text.strip()}}}{' ' if text.endswith(' ') else ''}" if words.strong else text
-
-
-def _escaped(text: str) -> str:
-    return "".join(SIGNS.get(sign, sign) for sign in text)
 
 
 def _code(text: str) -> str:
     """Typewriter, with breaks allowed behind operators."""
-    broken = _escaped(text).replace("*", r"*\allowbreak{}").replace("-", r"-{}")  # two hyphens are no dash
-    return rf"\texttt{{{broken}}}"
+    return code(text).replace("*", r"*\allowbreak{}")
 
 
 def _breakable(tex: str) -> str:
