@@ -1,7 +1,7 @@
 """Claim: no true error exceeds the kernel's bound, proven by balls, on a million states of RTTRR and 100,000 of others.
 
-The kernel with bounds computes tau, F, N, f, n; the recursion on balls of 192 bits encloses the true values of the same
-states. A number counts as kept only if its ball shows that the whole of it lies within the bound. Written down:
+The kernel with bounds computes tau, F, N, f, n, and another one tau alone, with inertia moved between links; the
+recursion on balls of 192 bits encloses the true values of the same states. A number counts as kept only if its ball shows that the whole of it lies within the bound. Written down:
 violations, bound over true error (median and least), and what the bound costs over the plain kernel.
 
 Run: python benchmarks/bounds.py [--states N] [--others N] [--robots NAME ...] [--time] [--save]. Exit 1 on a violation.
@@ -28,40 +28,50 @@ from rttrr_pin.validate import Sampler
 from saved import result
 
 ROBOTS = ("rttrr", "trr", "trtr", "trtrr", "trttr", "example:panda", "example:talos_reduced")
+ALONE = "tau alone"
 BLOCK = 1000
 BITS = 192
+COLUMNS = (*QUANTITIES, ALONE)
 EPS = float(np.finfo(float).eps)
 
 
 @cache
-def kernel(name: str) -> tuple[Any, Any, Any]:
-    """The robot, and its kernel without and with bounds."""
+def kernel(name: str) -> tuple[Any, Any, Any, Any]:
+    """The robot, its kernel without and with bounds, and one of tau and its bound alone."""
     robot = rttrr_pin.load(name)
     bounds = tuple(f"{quantity}_bound" for quantity in QUANTITIES)
-    return robot, robot.compile(QUANTITIES), robot.compile((*QUANTITIES, *bounds))
+    return (
+        robot,
+        robot.compile(QUANTITIES),
+        robot.compile((*QUANTITIES, *bounds)),
+        robot.compile(("tau", "tau_bound")),
+    )
 
 
 def block(job: tuple[str, int, int]) -> tuple[str, int, dict[str, tuple[int, np.ndarray, float, float, float]]]:
     """Violations, sampled ratios bound / error, and the largest error and bound in eps of the vector, by quantity."""
     name, first, count = job
-    robot, _, bounded = kernel(name)
+    robot, _, bounded, alone = kernel(name)
     states = Sampler(robot.model, "uniform", 0, robot.link_names[-1]).draw(first, count)
     wrench = [rttrr_pin.Wrench(x.f, x.n, robot.link_names[x.link]) for x in states.loads]
     computed = bounded(states.q, states.v, states.a, payload=wrench, threads=1)
+    less = alone(states.q, states.v, states.a, payload=wrench, threads=1)
+    computed |= {ALONE: less["tau"], f"{ALONE}_bound": less["tau_bound"]}
     program = straight(robot.model, tuple((load.link, load.in_base) for load in states.loads), "doubles")
     given = np.hstack([states.q, states.v, states.a, *(x for load in states.loads for x in (load.f, load.n))])
-    ends = np.cumsum([0, *(computed[quantity][0].size for quantity in QUANTITIES)])
-    values, bounds = (np.hstack([computed[q + end].reshape(count, -1) for q in QUANTITIES]) for end in ("", "_bound"))
+    ends = np.cumsum([0, *(computed[quantity][0].size for quantity in COLUMNS)])
+    values, bounds = (np.hstack([computed[q + end].reshape(count, -1) for q in COLUMNS]) for end in ("", "_bound"))
+    places = [*program.places, *program.places[: robot.model.nv]]
     errors, kept = np.empty_like(values), np.empty(values.shape, dtype=bool)
     with precision(BITS):
         run = program.ready()
         for row, state in enumerate(given.tolist()):
             truth = run(state)
-            off = [abs(truth[place] - x) for place, x in zip(program.places, values[row].tolist(), strict=True)]
+            off = [abs(truth[place] - x) for place, x in zip(places, values[row].tolist(), strict=True)]
             errors[row] = [float(x) for x in off]
             kept[row] = [x <= bound for x, bound in zip(off, bounds[row].tolist(), strict=True)]  # only if certainly so
     found = {}
-    for quantity, first_, last in zip(QUANTITIES, ends, ends[1:], strict=False):
+    for quantity, first_, last in zip(COLUMNS, ends, ends[1:], strict=False):
         x, error, bound = (y[:, first_:last] for y in (values, errors, bounds))
         size = np.linalg.norm(x, axis=1)
         size[size == 0.0] = np.inf
@@ -75,7 +85,7 @@ def block(job: tuple[str, int, int]) -> tuple[str, int, dict[str, tuple[int, np.
 
 def cost(name: str) -> float:
     """Time with bounds over time without, the median of repeats taken in turn."""
-    robot, plain, bounded = kernel(name)
+    robot, plain, bounded, _ = kernel(name)
     states = Sampler(robot.model, "uniform", 0).draw(0, 20_000)
     ratios = []
     for _ in range(7):
@@ -110,7 +120,7 @@ def main() -> int:
         with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
             results = list(pool.map(block, jobs))
         quantities = {}
-        for quantity in QUANTITIES:
+        for quantity in COLUMNS:
             parts = [found[quantity] for _, _, found in results]
             ratios = np.concatenate([part[1] for part in parts])
             quantities[quantity] = {
