@@ -20,10 +20,15 @@ Array = NDArray[np.float64]
 EPS = float(np.finfo(np.float64).eps)
 
 SMALLEST_EIGENVALUE, SMALLEST_MOVING, SMALLEST_PRODUCT = 1e-14, 1e-15, 1e-12
-"""MuJoCo's mjEPS, mjMINVAL and, before version 4, kEigEPS."""
+"""MuJoCo's mjEPS, mjMINVAL and, before version 3.14, kEigEPS."""
+
+NEGLIGIBLE = 1e-6
+"""Of the trace: what MuJoCo drops or leaves unturned of a tensor is told where it is more. Half a turn by 3.141593 is
+written as half a turn."""
 
 JACOBI = 4e-12
-"""MuJoCo's Jacobi iteration stops at products of 1e-12, or at rotations of 1.4e-6: its eigenvalues err by that much."""
+"""MuJoCo's Jacobi iteration stops, before version 3.14, at products of 1e-12, or at rotations of 1.4e-6: its
+eigenvalues err by that much."""
 
 DRAKE_EPS, GAZEBO_EPS = 16.0 * EPS, 5.0 * EPS
 """Of max(1, trace / 2), and of the trace."""
@@ -107,22 +112,24 @@ def _from_shapes(document: Document, name: str) -> bool:
     return body.inertial is None and any(shape.role == "collision" for shape in body.geometry)
 
 
-def _fixed(document: Document) -> Iterator[tuple[str, Mass]]:
-    """Links that are merged into one that moves."""
+def _moving(document: Document) -> Iterator[tuple[str, Mass]]:
+    """Links that do not belong to the world."""
     anchored = lumps(document)[document.root].members
-    for name, inertial in _inertials(document):
-        if name not in anchored and not document.carried_by[name].moves:
-            yield name, inertial
+    return ((name, inertial) for name, inertial in _inertials(document) if name not in anchored)
 
 
 def mujoco_negative(document: Document) -> Iterator[str]:
-    """Negative masses that are merged."""
-    return (name for name, inertial in _fixed(document) if inertial.mass.exact < 0)
+    """Negative masses of links that are merged; of a link by itself, that is too little mass."""
+    merged = {name for lump in lumps(document).values() if len(lump.members) > 1 for name in lump.members}
+    return (name for name, inertial in _moving(document) if name in merged and inertial.mass.exact < 0)
 
 
 def mujoco_massless_tensor(document: Document) -> Iterator[str]:
-    """Inertia without mass that is merged."""
-    return (name for name, inertial in _fixed(document) if inertial.mass.exact == 0 and inertial.written.any())
+    """Inertia without mass that is merged into a link."""
+    for name, inertial in _moving(document):
+        massless = 0 <= inertial.mass.exact < SMALLEST_MOVING
+        if massless and not document.carried_by[name].moves and inertial.written.any():
+            yield name
 
 
 def mujoco_geometry(document: Document) -> Iterator[str]:
@@ -132,11 +139,45 @@ def mujoco_geometry(document: Document) -> Iterator[str]:
 
 
 def mujoco_products(document: Document) -> Iterator[str]:
-    """Products below 1e-12 that are more than a millionth of the trace."""
-    for name, inertial in _inertials(document):
+    """Products below 1e-12 that are not negligible."""
+    for name, inertial in _moving(document):
         largest = _products(inertial.written)
-        if 1e-6 * abs(float(np.trace(inertial.written))) < largest < SMALLEST_PRODUCT:
+        if NEGLIGIBLE * abs(float(np.trace(inertial.written))) < largest < SMALLEST_PRODUCT:
             yield name
+
+
+def mujoco_rpy(document: Document) -> Iterator[str]:
+    """Tensors that their rpy turns into others."""
+    return (name for name, inertial in _moving(document) if _differ(inertial.inertia, inertial.written))
+
+
+def _differ(turned: Array, tensor: Array) -> bool:
+    return bool(np.linalg.norm(turned - tensor) > NEGLIGIBLE * abs(float(np.trace(tensor))))
+
+
+def mujoco_fused(document: Document) -> Iterator[str]:
+    """Merged links of which MuJoCo exchanges the placement and the inertial frame, or turns the tensor twice."""
+    for base, lump in lumps(document).items():
+        R, p = document.placements[base]
+        for name in lump.members[1:] if base != document.root else ():
+            inertial, (R_member, p_member) = document.links[name].inertial, document.placements[name]
+            if inertial is None or inertial.mass.exact < SMALLEST_MOVING:
+                continue
+            if _misplaced(inertial, R.T @ R_member, R.T @ (p_member - p)):
+                yield name
+
+
+def _misplaced(inertial: Mass, R: Array, p: Array) -> bool:
+    """Whether it matters that a link at R, p is merged in the wrong order, or turned twice.
+
+    MuJoCo's inertial frame has principal axes, by falling moment: it is turned against the link where there are
+    products, or where moments rise. Shifts alone can be exchanged.
+    """
+    tensor = inertial.written
+    axes_turned = bool(_products(tensor)) or bool(np.any(np.diff(tensor.diagonal()) > 0.0))
+    if np.allclose(R, np.eye(3), rtol=0.0, atol=NEGLIGIBLE):
+        return axes_turned and bool(np.any(np.abs(p) > NEGLIGIBLE))
+    return axes_turned or any(inertial.com) or _differ(R @ tensor @ R.T, tensor)
 
 
 def _beyond(moments: Array, tolerance: float, rounding: float) -> bool | None:

@@ -8,7 +8,7 @@ their source alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from rttrr_pin.inspect import consumer_inertia as inertia
@@ -30,6 +30,7 @@ class Rule:
         reason: the rule in a sentence.
         source: file and function of the consumer that says so.
         places: the links or joints where it applies.
+        at_worst: what they do at worst, where `does` is "either".
     """
 
     id: str
@@ -38,6 +39,7 @@ class Rule:
     reason: str
     source: str
     places: Places
+    at_worst: Does = Does.REFUSE
 
 
 PINOCCHIO, MUJOCO, DRAKE, GAZEBO, KDL = CONSUMERS = ("Pinocchio", "MuJoCo", "Drake", "Gazebo", "KDL")
@@ -71,30 +73,42 @@ RULES = (
          "a moving link, with what is fixed to it, has a mass or a principal moment below 1e-15 (mjMINVAL)",
          "mujoco: src/user/user_model.cc, mjCModel::CheckBodyMassInertia", inertia.mujoco_minimum),
     Rule("mujoco-negative", (MUJOCO,), Does.ALTER,
-         "a negative mass on a link that is fixed to another becomes 0 (boundmass)",
+         "a negative mass, merged with other masses, becomes 0 (boundmass)",
          "mujoco: src/user/user_objects.cc, mjCBody::Compile", inertia.mujoco_negative),
     Rule("mujoco-massless-tensor", (MUJOCO,), Does.ALTER,
-         "the inertia of a fixed link without mass is dropped",
+         "the inertia of a fixed link with a mass below 1e-15 kg (mjMINVAL) is dropped",
          "mujoco: src/user/user_model.cc, mjCModel::FuseStatic", inertia.mujoco_massless_tensor),
     Rule("mujoco-geometry", (MUJOCO,), Does.ALTER,
          "a link without <inertial> gets mass and inertia from its collision shapes, at 1000 kg/m^3",
          "mujoco: src/user/user_objects.cc, mjCBody::InertiaFromGeom", inertia.mujoco_geometry),
     Rule("mujoco-products", (MUJOCO,), Does.EITHER,
-         "before version 4, products of inertia below 1e-12 kg m^2 are dropped (kEigEPS)",
-         "mujoco: src/user/user_util.cc, mjuu_eig3", inertia.mujoco_products),
+         "before version 3.14, products of inertia below 1e-12 kg m^2 are dropped (kEigEPS)",
+         "mujoco: src/user/user_util.cc, mjuu_eig3", inertia.mujoco_products, at_worst=Does.ALTER),
+    Rule("mujoco-rpy", (MUJOCO,), Does.EITHER,
+         "before version 3.14, the rpy of <inertial> is ignored: its tensor is taken in the axes of the link",
+         "mujoco: src/user/user_objects.cc, mjCBody::Compile", inertia.mujoco_rpy, at_worst=Does.ALTER),
+    Rule("mujoco-fused", (MUJOCO,), Does.EITHER,
+         "from version 3.3.3 to 3.10, a fixed link that is turned, or whose principal axes are, is merged wrongly",
+         "mujoco: src/user/user_objects.cc, mjCBody::AccumulateInertia", inertia.mujoco_fused, at_worst=Does.ALTER),
     Rule("mujoco-mimic", (MUJOCO,), Does.ALTER,
-         "<mimic> is ignored: the joint moves by itself",
+         "<mimic> is ignored before version 3.13, and then a soft constraint: the joint can move by itself",
          "mujoco: src/xml/xml_urdf.cc, mjXURDF::Joint", joints.mimicking),
     Rule("mujoco-range", (MUJOCO,), Does.ALTER,
-         "a range of length zero, or with an end left out, is no limit: the joint moves freely",
+         "a range of length zero, from above to below, or with an end left out, is no limit: the joint moves freely",
          "mujoco: src/xml/xml_urdf.cc, mjXURDF::Joint", joints.degenerate_range),
+    Rule("mujoco-continuous", (MUJOCO,), Does.EITHER,
+         "before version 4, the range of a continuous joint limits it",
+         "mujoco: src/xml/xml_urdf.cc, mjXURDF::Joint", joints.continuous_range, at_worst=Does.ALTER),
+    Rule("mujoco-floating", (MUJOCO,), Does.REFUSE,
+         "a floating joint hangs on a link that moves",
+         "mujoco: src/user/user_model.cc, mjCModel::CopyTree", joints.floating_on_moving),
     Rule("drake-inertia", (DRAKE,), Does.ALTER,
          "an impossible inertia is replaced by that of a ball of water of the same mass, with a warning",
          "drake: multibody/parsing/detail_common.cc, ParseSpatialInertia", inertia.drake_inertia),
     Rule("drake-rounding", (DRAKE,), Does.EITHER,
          "the triangle inequality is violated by just Drake's tolerance, 16 eps max(1 kg m^2, trace / 2)",
          "drake: multibody/tree/rotational_inertia.cc, AreMomentsOfInertiaNearPositiveAndSatisfyTriangleInequality",
-         inertia.drake_rounding),
+         inertia.drake_rounding, at_worst=Does.ALTER),
     Rule("drake-mass", (DRAKE,), Does.ALTER,
          "a negative mass, or none with an inertia, becomes 1 kg of water, with a warning",
          "drake: multibody/parsing/detail_common.cc, ParseSpatialInertia", inertia.drake_mass),
@@ -133,13 +147,24 @@ RULES = (
 
 def verdicts(document: Document) -> tuple[Verdict, ...]:
     """What each consumer does with a file."""
-    found: dict[str, list[Hit]] = {consumer: [] for consumer in CONSUMERS}
+    found: dict[str, list[tuple[Rule, str]]] = {consumer: [] for consumer in CONSUMERS}
     for rule in RULES:
         for name in rule.places(document):
             for consumer in rule.consumers:
-                found[consumer].append(Hit(rule.id, rule.does, name, rule.reason, rule.source))
-    worst = list(Does)
+                found[consumer].append((rule, name))
     return tuple(
-        Verdict(consumer, max((hit.does for hit in hits), key=worst.index, default=Does.ACCEPT), tuple(hits))
-        for consumer, hits in found.items()
+        Verdict(consumer, _worst(rule for rule, _ in applied), tuple(_hit(rule, name) for rule, name in applied))
+        for consumer, applied in found.items()
     )
+
+
+def _worst(rules: Iterable[Rule]) -> Does:
+    """What a consumer does under these rules; "either" only where the open ones may make it worse than the others."""
+    order, applied = list(Does), list(rules)
+    sure = max((rule.does for rule in applied if rule.does is not Does.EITHER), key=order.index, default=Does.ACCEPT)
+    may = max((rule.at_worst for rule in applied if rule.does is Does.EITHER), key=order.index, default=sure)
+    return Does.EITHER if order.index(may) > order.index(sure) else sure
+
+
+def _hit(rule: Rule, name: str) -> Hit:
+    return Hit(rule.id, rule.does, name, rule.reason, rule.source)

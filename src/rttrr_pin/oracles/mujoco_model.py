@@ -12,7 +12,7 @@ against ours as it read them. What its compiler would do to them next is kept aw
 - `<mimic>` becomes a soft constraint (in older versions nothing): left out, once it is compared. Followers are driven
   along, as for every oracle.
 - A floating joint must hang on the world: three slides and a ball are the same joint, and may hang anywhere.
-- Before version 4 the `rpy` of `<inertial>` is dropped: a tensor that it turns is a difference, and an error.
+- Before version 3.14 the `rpy` of `<inertial>` is dropped: a tensor that it turns is a difference, and an error.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ END = "."
 
 DROPPED = ("mujoco", "visual", "collision")
 
-TURNS_TENSORS = int(mujoco.__version__.split(".")[0]) >= 4
+TURNS_TENSORS = tuple(int(part) for part in mujoco.__version__.split(".")[:2]) >= (3, 14)
 """Whether MuJoCo heeds the rpy of `<inertial>`."""
 
 SLIDE, HINGE, BALL = mujoco.mjtJoint.mjJNT_SLIDE, mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_BALL
