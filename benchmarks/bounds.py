@@ -1,7 +1,8 @@
 """Claim: no true error exceeds the kernel's bound, proven by balls, on a million states of RTTRR and 100,000 of others.
 
 The kernel with bounds computes tau, F, N, f, n, and another one tau alone, with inertia moved between links; the
-recursion on balls of 192 bits encloses the true values of the same states. A number counts as kept only if its ball shows that the whole of it lies within the bound. Written down:
+recursion on balls of 192 bits encloses the true values of the same states. A number counts as kept only if its ball
+shows that the whole of it lies within the bound. Written down:
 violations, bound over true error (median and least), and what the bound costs over the plain kernel.
 
 Run: python benchmarks/bounds.py [--states N] [--others N] [--robots NAME ...] [--time] [--save]. Exit 1 on a violation.

@@ -45,3 +45,28 @@ def bounds() -> list[str]:
             f"{robot['time_with_bounds_over_plain']:.1f} |"
         )
     return lines
+
+
+def errors() -> list[str]:
+    settled = result("umpire")
+    lines = [
+        f"Distance from the true value in eps of the norm of the true vector, of the link that is farthest off, in "
+        f"{settled['states']:,} uniform states ({machine(settled)}; `python benchmarks/umpire.py`): median / 99.9 % / "
+        "worst.",
+        "",
+        "| | | ours | Pinocchio | states in which ours is nearer; farther |",
+        "|---|---|---|---|---|",
+    ]
+    for name, robot in settled["robots"].items():
+        found = robot["errors_eps"]
+        for quantity, ours in found["ours"].items():
+            theirs = found["pinocchio"][quantity]
+            lines.append(
+                f"| {name} | {quantity} | {_row(ours)} | {_row(theirs)} | "
+                f"{100 * found['ours_nearer'][quantity]:.0f} %; {100 * found['pinocchio_nearer'][quantity]:.0f} % |"
+            )
+    return lines
+
+
+def _row(figures: dict[str, float]) -> str:
+    return f"{figures['median']:.2f} / {figures['p999']:,.1f} / {figures['worst']:,.0f}"

@@ -90,6 +90,7 @@ TABLES: dict[str, dict[str, Callable[[], list[str]]]] = {
         "audit": proof_tables.audit,
         "bounds": proof_tables.bounds,
     },
+    "docs/gate.md": {"errors": proof_tables.errors},
     "docs/kernel.md": {
         "joints": kernel_tables.joints,
         "operations": kernel_tables.operations,
