@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from rttrr_pin.kernel.cost import fused
 from rttrr_pin.kernel.emit import emitter
 from rttrr_pin.kernel.emit.llvm_vectors import Lines, polynomials
-from rttrr_pin.kernel.expression import Graph
+from rttrr_pin.kernel.expression import Graph, Op
 from rttrr_pin.kernel.program import Field, Program
 
 Array = NDArray[np.float64]
@@ -57,7 +57,7 @@ def peak(chains: int = 10, length: int = 400, states: int = 2048, repeats: int =
     values = [graph.input(k) for k in range(chains)]
     factor, term = graph.input(chains), graph.input(chains + 1)
     for _ in range(length):
-        values = [graph.add(graph.mul(x, factor), term) for x in values]
+        values = [graph.fused(Op.FMA, x, factor, term) for x in values]
     program = Program(graph, (Field("x", (chains + 2,)),), (Field("y", (chains,)),), tuple(values))
     machine = emitter("llvm")
     executable = machine.load(machine.emit(program), program.inputs, program.outputs)

@@ -14,9 +14,8 @@ but for quaternions: what is meant by s is s / |s|, which differs by | |s| - 1 |
 Numbers of the robot bring their errors (`Known`). Changes of sign, and products with powers of two among the robot's
 numbers, are exact.
 
-The bounds are rounded too, and the values that they are computed from may be those of fused operations, which round
-once where these formulas round twice: both change a bound by at most some u for each operation on its way, and are
-covered by one factor (`SLACK`). Underflow is not covered; it needs numbers below 1e-290.
+The bounds are rounded too: that changes a bound by at most some u for each operation on its way, and is covered by one
+factor (`SLACK`). Underflow is not covered; it needs numbers below 1e-290.
 """
 
 from __future__ import annotations
@@ -30,18 +29,21 @@ from rttrr_pin.kernel.program import Field, Program
 from rttrr_pin.kernel.quantities import BOUND
 
 
-def with_bounds(program: Program, outputs: tuple[Field, ...], quaternions: tuple[int, ...] = ()) -> Program:
+def with_bounds(
+    program: Program, outputs: tuple[Field, ...], quaternions: tuple[int, ...] = (), fused: bool = False
+) -> Program:
     """The program with bounds among its outputs.
 
     Args:
         program: whose numbers of the robot are `Known`.
         outputs: names of the program's outputs, and of such with `BOUND` behind.
         quaternions: the place of the first component of each among the inputs.
+        fused: whether products may be fused with sums.
 
     Returns:
         A program with the same operations for the values, whose outputs are these.
     """
-    bounder = _Bounder(program, quaternions)
+    bounder = _Bounder(program, quaternions, fused)
     places = {}
     at = 0
     for output in program.outputs:
@@ -62,13 +64,15 @@ class _Bounder:
     Attributes:
         program: the program.
         quaternions: first places of quaternions among the inputs.
+        fused: whether products are fused with sums.
         graph: the new operations.
         values: the new node of each old one.
         bounds: a bound on its error, in u.
     """
 
     program: Program
-    quaternions: tuple[int, ...] = ()
+    quaternions: tuple[int, ...]
+    fused: bool
     graph: Graph = field(default_factory=Graph)
     values: dict[int, Node] = field(default_factory=dict)
     bounds: dict[int, Node] = field(default_factory=dict)
@@ -96,8 +100,8 @@ class _Bounder:
         if op in (Op.NEG, Op.ABS, Op.SIGN):
             return z, inherited
         if op in (Op.SIN, Op.COS):
-            return z, inherited + self._size(z) * (2.0 * SINE_ULPS)
-        return z, inherited if self._is_exact(z, args) else inherited + self._size(z)
+            return z, self._sum(self._size(z) * (2.0 * SINE_ULPS), inherited)
+        return z, inherited if self._is_exact(z, args) else self._sum(inherited, self._size(z))
 
     def _input(self, place: int) -> Node:
         return Node(self.graph, self.graph.input(place))
@@ -107,7 +111,7 @@ class _Bounder:
         for first in self.quaternions:
             if first <= place < first + 4:
                 x, y, z, w = (self._input(k) for k in range(first, first + 4))
-                defect = x * x + y * y + z * z + w * w - 1.0
+                defect = x * x + y * y + z * z + w * w - 1.0  # rounded 8 times, by u or less
                 return self._size(self._input(place)) * (self._size(defect) * (1.0 / UNIT_ROUNDOFF) + 8.0)
         return self._constant(0.0)
 
@@ -117,14 +121,23 @@ class _Bounder:
             return self._constant(0.0)  # of rates, whose sign is that of an exact double
         if op is Op.MUL or op in FUSED:
             x, y, *term = args
-            product = self._most(x) * self.bounds[y] + self._most(y) * self.bounds[x]
-            return product + self.bounds[term[0]] if term else product
+            product = self._sum(self._most(x) * self.bounds[y], self._most(y) * self.bounds[x])
+            return self._sum(product, self.bounds[term[0]]) if term else product
         total = self.bounds[args[0]]
-        return total + self.bounds[args[1]] if len(args) > 1 else total
+        return self._sum(total, self.bounds[args[1]]) if len(args) > 1 else total
 
     def _most(self, x: int) -> Node:
         """|x| + u b_x."""
-        return self._size(self.values[x]) + self.bounds[x] * UNIT_ROUNDOFF
+        return self._sum(self.bounds[x] * UNIT_ROUNDOFF, self._size(self.values[x]))
+
+    def _sum(self, x: Node, y: Node) -> Node:
+        """The sum of two bounds, none of which is negative."""
+        graph = self.graph
+        for product, term in ((x.number, y.number), (y.number, x.number)):
+            if self.fused and graph.op[product] is Op.MUL and not graph.is_constant(term, 0):
+                first, second = graph.args[product]
+                return Node(graph, graph.fused(Op.FMA, first, second, term))
+        return x + y
 
     def _size(self, x: Node) -> Node:
         return x.function(Op.ABS)

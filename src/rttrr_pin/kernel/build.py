@@ -69,7 +69,8 @@ def _bounded(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlo
     """Values and bounds on their rounding."""
     plain = tuple(dict.fromkeys(name.removesuffix(BOUND) for name in outputs))
     program = simplify(_whole(model, plain, payloads, arithmetic=KNOWING))
-    return with_bounds(in_chains(program, fused), outputs_of(model, outputs), _quaternions(model, program))
+    chained = in_chains(program, fused)
+    return with_bounds(chained, outputs_of(model, outputs), _quaternions(model, program), fused)
 
 
 def _quaternions(model: Model, program: Program) -> tuple[int, ...]:

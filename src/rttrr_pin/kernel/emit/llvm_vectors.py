@@ -1,7 +1,6 @@
 """Operations on vectors of states as LLVM assembly: what straight lines and the steps of a schedule are written in.
 
-No operation is reordered, and NaN and infinities are respected. `contract` alone lets a product and the sum that takes
-it become one fused multiply-add.
+No operation is reordered or fused with another, and NaN and infinities are respected: what is written is what is done.
 """
 
 from __future__ import annotations
@@ -185,7 +184,7 @@ class VectorCode:
         graph, lines = self.program.graph, self.lines
         op, args = graph.op[x], graph.args[x]
         if op in BINARY:
-            name = lines(f"{BINARY[op]} contract {lines.vector} {self.get(args[0])}, {self.get(args[1])}")
+            name = lines.op(BINARY[op], self.get(args[0]), self.get(args[1]))
         elif op in FUSED:
             left, right, term = (self.get(y) for y in args)
             left = lines.negated(left) if op is Op.FNMA else left

@@ -318,7 +318,7 @@ class NumbaEmitter:
         """Compile the source."""
         space: dict[str, Any] = {"fma": fma, "sign": sign, "inf": math.inf, "nan": math.nan}
         exec(compile(code, "<program>", "exec"), space)
-        compiler = cfunc(types.void(types.CPointer(types.float64)), fastmath={"contract"})
+        compiler = cfunc(types.void(types.CPointer(types.float64)))
         segments = [compiler(space[f"segment_{step[0]}"]) for step in space["STEPS"] if len(step) == 1]
         steps = [(segments[step[0]].address, 0, 0, 0) if len(step) == 1 else (0, *step) for step in space["STEPS"]]
         return NumbaExecutable(segments, np.array(steps, dtype=np.int64), space["BETWEEN"])
