@@ -102,8 +102,10 @@ def _number(value: float, error: float) -> Scalar:
     return Bounded(value, error)
 
 
-def _sincos(q: Bounded) -> tuple[Bounded, Bounded]:
-    """Sine and cosine have slopes of at most one, so the bound of q carries over."""
+def _sincos(q: Bounded | int) -> tuple[Bounded, Bounded]:
+    """Sine and cosine have slopes of at most one, so the bound of q carries over; what stands still may be a number."""
+    if not isinstance(q, Bounded):
+        q = Bounded(float(q), 0.0)
     x = float(q.value) if isinstance(q.value, float) else q.value
     s, c = np.sin(x), np.cos(x)
     ulps = 2 * SINE_ULPS * UNIT_ROUNDOFF

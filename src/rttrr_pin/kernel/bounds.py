@@ -6,7 +6,7 @@ least |x| and at least |x_true|:
 
     z = fl(x + y):  b_z = b_x + b_y + |z|
     z = fl(x y):    b_z = m_x b_y + m_y b_x + |z|     (that is |x| b_y + |y| b_x + 2 u b_x b_y + |z|)
-    z = fl(x y + w): b_z = m_x b_y + m_y b_x + b_w + |z|, rounded once
+    z = fl(x y + w), and with other signs: b_z = m_x b_y + m_y b_x + b_w + |z|
     z = sin x:      b_z = b_x + 2 ulps |z|
 
 Terms of first order are exact; of second order one is counted twice. Inputs are the doubles themselves, without error,

@@ -31,6 +31,10 @@ LONGEST = 4_000_000
 """Nodes of what cannot be made of calls: beyond it, compiling takes more minutes and memory than anyone has."""
 
 
+WITH_BOUNDS = 5
+"""Nodes of a program with bounds for each one without."""
+
+
 def build(
     model: Model,
     outputs: Sequence[str],
@@ -68,7 +72,7 @@ def build(
 def _bounded(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot], fused: bool) -> Program:
     """Values and bounds on their rounding."""
     plain = tuple(dict.fromkeys(name.removesuffix(BOUND) for name in outputs))
-    program = simplify(_whole(model, plain, payloads, arithmetic=KNOWING))
+    program = simplify(_whole(model, plain, payloads, KNOWING, LONGEST // WITH_BOUNDS))
     chained = in_chains(program, fused)
     return with_bounds(chained, outputs_of(model, outputs), _quaternions(model, program), fused)
 
@@ -86,15 +90,16 @@ def _whole(
     outputs: Sequence[str],
     payloads: Sequence[PayloadSlot],
     arithmetic: Arithmetic = TRACING,
+    most: int = LONGEST,
 ) -> Program:
     """Straight lines, however long, but no longer than can be compiled."""
     try:
-        return trace(model, outputs, payloads, most=LONGEST, arithmetic=arithmetic)
+        return trace(model, outputs, payloads, most=most, arithmetic=arithmetic)
     except GraphFullError:
         names = [name for name in outputs if not QUANTITIES[name].by_steps] or outputs
         raise InputError(
             f"{', '.join(names)} of robot {model.name!r} with {model.nv} degrees of freedom: the program has more than "
-            f"{LONGEST} nodes, expected fewer; take differences of tau, or a smaller part of the robot"
+            f"{most} nodes, expected fewer; take differences of tau, or a smaller part of the robot"
         ) from None
 
 

@@ -17,7 +17,8 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from rttrr_pin.kernel.known import Known, error_of, exactly
+from rttrr_pin.arithmetic import SINE_ULPS, UNIT_ROUNDOFF
+from rttrr_pin.kernel.known import Known, exactly, origin_of
 
 Number: TypeAlias = int | float
 
@@ -86,16 +87,16 @@ class Graph:
     def constant(self, value: Number) -> int:
         """A number of the robot; +0 and -0 are one, since no sum or product of the recursion tells them apart.
 
-        Numbers with a bound on their error (`Known`) share a node only where the bounds are equal too.
+        Numbers with a bound on their error (`Known`) share a node only where they are the same number.
         """
-        error = error_of(value)
-        key = (Op.CONSTANT, float(value) + 0.0, error)
+        key = (Op.CONSTANT, float(value) + 0.0, origin_of(value))
         number = self._known.get(key)
         if number is None:
             number = self._known[key] = len(self.op)
             self.op.append(Op.CONSTANT)
             self.args.append(())
-            self.value[number] = Known(float(value) + 0.0, error) if isinstance(value, Known) else float(value) + 0.0
+            exact = float(value) + 0.0
+            self.value[number] = Known(exact, value.error, value.origin) if isinstance(value, Known) else exact
         return number
 
     def input(self, place: int) -> int:
@@ -175,7 +176,7 @@ class Graph:
     def function(self, op: Op, x: int) -> int:
         """Sine, cosine, sign or absolute value; odd and even ones lose the sign of their argument."""
         if self.op[x] is Op.CONSTANT:
-            return self.constant(FUNCTIONS[op](self.value[x]))
+            return self.constant(_of_number(op, self.value[x]))
         if self.op[x] is Op.NEG:
             inner = self.function(op, self.args[x][0])
             return inner if op in (Op.COS, Op.ABS) else self.neg(inner)
@@ -209,6 +210,15 @@ FUNCTIONS: dict[Op, Callable[[float], float]] = {
     Op.ABS: abs,
 }
 """Each function of a number."""
+
+
+def _of_number(op: Op, x: float) -> float:
+    """A function of a number; the sine and cosine of one that knows its error know theirs, but for sin 0 and cos 0."""
+    value = FUNCTIONS[op](x)
+    if op in (Op.SIN, Op.COS) and isinstance(x, Known) and not exactly(x, 0.0):
+        return x.function(op.name, value, x.error + 2 * SINE_ULPS * UNIT_ROUNDOFF * abs(value))
+    return value
+
 
 BUILD: dict[Op, Callable[..., int]] = {
     Op.ADD: Graph.add,
