@@ -18,6 +18,7 @@ from chains import EXAMPLES
 from rttrr_pin import oracles
 from rttrr_pin.cli import main
 from rttrr_pin.model import QUANTITIES
+from tolerances import ROUNDING, norm_error
 
 
 def run(*words: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
@@ -70,7 +71,9 @@ def test_one_state_in_full(capsys: pytest.CaptureFixture[str]) -> None:
     data = json.loads(capsys.readouterr().out)
     robot = rttrr_pin.load("rttrr")
     again = robot.inverse_dynamics(data["q"], data["v"], data["a"])
-    assert data["ours"]["tau"] == again.tau.tolist()
+    assert (
+        norm_error(data["ours"]["tau"], again.tau) <= ROUNDING
+    )  # of 10,000 states the kernel's, of one the recursion's
     assert set(data["theirs"]) == set(QUANTITIES)
 
 

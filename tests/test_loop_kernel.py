@@ -134,6 +134,15 @@ def test_what_is_no_sequence_of_steps_stays_straight_until_it_is_too_long(
         rttrr_pin.load("rttrr").compile(("tau", "regressor"))(np.zeros(5), np.zeros(5), np.zeros(5))
 
 
+def test_bounds_count_among_what_is_too_long(rttrr: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+    """They make a program some times as long."""
+    nodes = len(trace(rttrr.model, ["tau"]).graph)
+    monkeypatch.setattr(build, "LONGEST", 2 * nodes)
+    assert isinstance(build.build(rttrr.model, ["tau"], straight_line=None), Program)
+    with pytest.raises(InputError, match="^tau of robot 'rttrr' with 5 degrees of freedom: "):
+        build.build(rttrr.model, ["tau", "tau_bound"])
+
+
 def test_emitters_that_know_no_calls_get_straight_lines(rttrr: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
     assert set(BY_CALLS) == {"llvm", "numpy"}
     monkeypatch.setattr(build, "schedule", None)

@@ -30,7 +30,6 @@ and in the RTTRR arm, most of whose numbers are zero. A robot with more is not t
 LONGEST = 4_000_000
 """Nodes of what cannot be made of calls: beyond it, compiling takes more minutes and memory than anyone has."""
 
-
 WITH_BOUNDS = 5
 """Nodes of a program with bounds for each one without."""
 
@@ -72,7 +71,7 @@ def build(
 def _bounded(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot], fused: bool) -> Program:
     """Values and bounds on their rounding."""
     plain = tuple(dict.fromkeys(name.removesuffix(BOUND) for name in outputs))
-    program = simplify(_whole(model, plain, payloads, KNOWING, LONGEST // WITH_BOUNDS))
+    program = simplify(_whole(model, plain, payloads, KNOWING, WITH_BOUNDS))
     chained = in_chains(program, fused)
     return with_bounds(chained, outputs_of(model, outputs), _quaternions(model, program), fused)
 
@@ -90,9 +89,10 @@ def _whole(
     outputs: Sequence[str],
     payloads: Sequence[PayloadSlot],
     arithmetic: Arithmetic = TRACING,
-    most: int = LONGEST,
+    growth: int = 1,
 ) -> Program:
-    """Straight lines, however long, but no longer than can be compiled."""
+    """Straight lines, however long, but no longer than can be compiled once they have so many times the nodes."""
+    most = LONGEST // growth
     try:
         return trace(model, outputs, payloads, most=most, arithmetic=arithmetic)
     except GraphFullError:
