@@ -136,7 +136,9 @@ def test_a_state_is_printed_with_the_numbers_of_its_run(capsys) -> None:
     assert "--states 60 --state" in capsys.readouterr().out
 
 
-def test_a_floating_joint_takes_the_readable_recursion() -> None:
-    """Its bound counts that the quaternion is not quite unit."""
-    floating = rttrr_pin.load("rttrr", base="floating")
-    assert Ours(floating, KERNEL_FROM).kernel is None
+def test_ours_is_the_kernel_where_compiling_pays() -> None:
+    """Also with a floating joint."""
+    for base in ("fixed", "floating"):
+        robot = rttrr_pin.load("rttrr", base=base)
+        assert Ours(robot, KERNEL_FROM).kernel is not None
+        assert Ours(robot, KERNEL_FROM - 1).kernel is None
