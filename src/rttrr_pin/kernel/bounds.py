@@ -107,11 +107,11 @@ class _Bounder:
         return Node(self.graph, self.graph.input(place))
 
     def _length_error(self, place: int) -> Node:
-        """How far a component of a quaternion may be from that of the unit one; the sum of squares errs by 4 u."""
+        """How far a component of a quaternion may be from that of the unit one; 8 u cover the square's rounding."""
         for first in self.quaternions:
             if first <= place < first + 4:
                 x, y, z, w = (self._input(k) for k in range(first, first + 4))
-                defect = x * x + y * y + z * z + w * w - 1.0  # rounded 8 times, by u or less
+                defect = x * x + y * y + z * z + w * w - 1.0
                 return self._size(self._input(place)) * (self._size(defect) * (1.0 / UNIT_ROUNDOFF) + 8.0)
         return self._constant(0.0)
 

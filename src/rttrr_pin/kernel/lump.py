@@ -128,7 +128,7 @@ def _movable(body: Body, carrier: Body | None) -> Inertia | None:
         return None
     u = body.axis
     distance = u.dot(body.r_C)
-    on_axis = all(exactly(x, 0.0) for x in _off_axis(body.r_C, u, distance))
+    on_axis = all(exactly(x, 0.0) for x in body.r_C - u * distance)
     heavy = carrier is None or on_axis or carrier.M >= LIGHT * body.M
     along = u * (distance * body.M) if heavy else NOWHERE
     centred = Inertia.of(body) - Inertia(0.0, along, NOTHING)
@@ -143,8 +143,6 @@ def _without(body: Body, moved: Inertia) -> Body:
     if body.type is JointType.PRISMATIC:
         return replace(body, I=NOTHING)
     rest = (Inertia.of(body) - moved).as_body(body)
-    if moved.m != 0.0:
-        rest = replace(rest, M=0.0, r_C=NOWHERE)
     k = _across(body.axis)
     rows = [[*row] for row in rest.I.rows]
     rows[k][k] = 0.0
@@ -158,13 +156,6 @@ def _without(body: Body, moved: Inertia) -> Body:
 def _along_one(u: Vector) -> bool:
     """Whether an axis is a coordinate axis."""
     return sum(not exactly(x, 0.0) for x in u) == 1
-
-
-def _off_axis(r: Vector, u: Vector, distance: float) -> list[float]:
-    """What of r lies off the axis u; along a coordinate axis, nothing that is computed."""
-    if _along_one(u):
-        return [x for x, y in zip(r, u, strict=True) if exactly(y, 0.0)]
-    return [*(r - u * distance)]
 
 
 def _across(u: Vector) -> int:
