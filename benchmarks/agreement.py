@@ -9,8 +9,8 @@ import sys
 
 import rttrr_pin
 from common import arguments, finish
-from rttrr_pin.model import QUANTITIES
-from rttrr_pin.validate import validate
+from rttrr_pin.core.wrench import QUANTITIES
+from rttrr_pin.validation import validate
 
 CLAIM = 500.0
 

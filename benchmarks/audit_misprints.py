@@ -21,10 +21,10 @@ import numpy as np
 
 from common import arguments, finish
 from misprints import Misprint, Numeral, Printer, Typesetter
-from rttrr_pin.paper import Kind, read_publication
-from rttrr_pin.paper.audit import Auditor, Paired
-from rttrr_pin.paper.publication import DEFINITION, Equation
-from rttrr_pin.symbolic.symbols import Terms
+from rttrr_pin.auditing import Kind, read_publication
+from rttrr_pin.auditing.audit import Auditor, Paired
+from rttrr_pin.auditing.publication import DEFINITION, Equation
+from rttrr_pin.derivation.symbols import Terms
 
 WANTED = 0.98
 

@@ -22,10 +22,10 @@ import numpy as np
 
 import rttrr_pin
 from common import arguments, finish
-from rttrr_pin.certify.balls import precision
-from rttrr_pin.certify.straight import straight
-from rttrr_pin.model import QUANTITIES
-from rttrr_pin.validate import Sampler
+from rttrr_pin.core.wrench import QUANTITIES
+from rttrr_pin.exact.intervals import precision
+from rttrr_pin.exact.straight_line import straight
+from rttrr_pin.validation import Sampler
 from saved import result
 
 ROBOTS = ("rttrr", "trr", "trtr", "trtrr", "trttr", "example:panda", "example:talos_reduced")

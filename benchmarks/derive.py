@@ -18,8 +18,8 @@ import numpy as np
 
 import rttrr_pin
 from common import arguments, finish
-from rttrr_pin.report.closed import WRITERS
-from rttrr_pin.symbolic import derive
+from rttrr_pin.derivation import derive
+from rttrr_pin.derivation.writers import WRITERS
 
 MOST_SECONDS = 10.0
 

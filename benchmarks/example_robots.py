@@ -13,8 +13,8 @@ from dataclasses import asdict
 from importlib import metadata
 
 from common import arguments, finish
-from rttrr_pin.model.sources import examples
-from rttrr_pin.validate import Task, validate_many
+from rttrr_pin.urdf.sources import examples
+from rttrr_pin.validation import Task, validate_many
 
 
 def main() -> int:

@@ -103,7 +103,7 @@ def refusal(error: Exception) -> str:
 def ask(model: Any, stage: Any, chance: float) -> tuple[str, str]:
     """Pinocchio's model of the same text against ours: what came of it, and what is wrong with that."""
     from rttrr_pin.errors import ModelMismatchError, OracleError
-    from rttrr_pin.oracles import make_oracle
+    from rttrr_pin.implementations import make_oracle
 
     if chance > PINOCCHIO_SHARE:
         return "", ""

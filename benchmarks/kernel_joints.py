@@ -22,10 +22,10 @@ from rich.table import Table
 import rttrr_pin
 from common import arguments, finish
 from rttrr_pin import Robot
-from rttrr_pin.kernel import Kernel, cache
-from rttrr_pin.kernel.build import STRAIGHT_LINE, build
-from rttrr_pin.kernel.schedule import Schedule
-from rttrr_pin.validate import Sampler
+from rttrr_pin.compile import Kernel, cache
+from rttrr_pin.compile.build import STRAIGHT_LINE, build
+from rttrr_pin.compile.call_program import Schedule
+from rttrr_pin.validation import Sampler
 
 sys.path.append(str(Path(__file__).parents[1] / "tests"))
 
@@ -106,8 +106,8 @@ def shown(rows: dict[int, dict[str, Timed]]) -> Table:
 
 
 def main() -> int:
-    from chains import random_chain
-    from tolerances import EPS, ROUNDING
+    from support.serial_chains import random_chain
+    from support.tolerances import EPS, ROUNDING
 
     parser = arguments(__doc__ or "")
     parser.add_argument("--joints", type=int, nargs="+", default=JOINTS)

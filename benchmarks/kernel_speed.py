@@ -23,7 +23,7 @@ from common import arguments, finish
 from kernel_speed_limits import available_states, copy, operations, peak
 from kernel_speed_report import check, compare, plot, show
 from peers_run import ENVIRONMENTS, PEERS, Array, interpreter, requirements, run_peer
-from rttrr_pin.validate.states import Sampler, States
+from rttrr_pin.validation.states import Sampler, States
 
 sys.path.insert(0, str(PEERS))
 import pinocchio_parallel

@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.kernel.cost import fused
-from rttrr_pin.kernel.emit import emitter
-from rttrr_pin.kernel.emit.llvm_vectors import Lines, polynomials
-from rttrr_pin.kernel.expression import Graph, Op
-from rttrr_pin.kernel.program import Field, Program
+from rttrr_pin.compile.cost import fused
+from rttrr_pin.compile.emit import emitter
+from rttrr_pin.compile.emit.llvm_vectors import Lines, polynomials
+from rttrr_pin.compile.expression import Graph, Op
+from rttrr_pin.compile.program import Field, Program
 
 Array = NDArray[np.float64]
 

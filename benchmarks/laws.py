@@ -16,8 +16,8 @@ from pathlib import Path
 
 import rttrr_pin
 from common import arguments, finish
-from rttrr_pin.model import Drive
-from rttrr_pin.validate import check_laws
+from rttrr_pin.core.joint import Drive
+from rttrr_pin.laws import check_laws
 
 sys.path.append(str(Path(__file__).parents[1] / "tests"))
 
@@ -27,7 +27,7 @@ BASES = ("fixed", "floating")
 
 def one(job: tuple[int, int]) -> tuple[int, str, dict[str, tuple[float, int, int]], Counter[str]]:
     """Seed, base, by law its worst share, violations and numbers held, and the joint types of one tree."""
-    from trees import random_tree
+    from support.trees import random_tree
 
     seed, states = job
     base = BASES[seed // LARGEST % 2]

@@ -8,8 +8,8 @@ from fractions import Fraction
 
 import numpy as np
 
-from rttrr_pin.paper.edits import DOTS, Kind
-from rttrr_pin.symbolic.symbols import Factors, Role, Symbol, Terms, factors_of
+from rttrr_pin.auditing.edits import DOTS, Kind
+from rttrr_pin.derivation.symbols import Factors, Role, Symbol, Terms, factors_of
 
 Numeral = tuple[Fraction, Factors]
 

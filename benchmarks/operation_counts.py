@@ -21,10 +21,10 @@ from rich.table import Table
 import rttrr_pin
 from common import arguments, finish
 from puma560 import armstrong, general
-from rttrr_pin.kernel.program import Program
-from rttrr_pin.kernel.simplify import collect, simplify
-from rttrr_pin.kernel.trace import trace
-from rttrr_pin.model import Model
+from rttrr_pin.compile.program import Program
+from rttrr_pin.compile.simplify import collect, simplify
+from rttrr_pin.compile.trace import trace
+from rttrr_pin.core.model import Model
 
 PUBLISHED = {
     "Puma 560, all parameters": {"OpenSYMORO": (345, 296), "SymPyBotics": (345, 296)},

@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.model import Joint, JointType, Link, Model
+from rttrr_pin.core.joint import Joint, JointType
+from rttrr_pin.core.model import Link, Model
 
 Array = NDArray[np.float64]
 

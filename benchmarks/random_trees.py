@@ -14,7 +14,7 @@ from pathlib import Path
 
 import rttrr_pin
 from common import arguments, finish
-from rttrr_pin.validate import validate
+from rttrr_pin.validation import validate
 
 sys.path.append(str(Path(__file__).parents[1] / "tests"))
 
@@ -23,7 +23,7 @@ LARGEST = 60
 
 def one(job: tuple[int, int]) -> tuple[int, list[str], bool, float, float, Counter[str]]:
     """Seed, bases that disagree, worst normwise error in eps and share, and the joint types of one tree."""
-    from trees import random_tree
+    from support.trees import random_tree
 
     seed, states = job
     text = random_tree(seed, 1 + seed % LARGEST)

@@ -2,7 +2,7 @@
 
 Run: python benchmarks/sincos_accuracy.py [--angles N] [--save]. Measured against mpmath on random angles of all sizes
 and on the doubles next to multiples of pi/2, where range reduction is hardest. Also fits the polynomials again, from
-Taylor's series at Chebyshev nodes, and compares them with those in `rttrr_pin.kernel.sincos`.
+Taylor's series at Chebyshev nodes, and compares them with those in `rttrr_pin.compile.sincos`.
 """
 
 from __future__ import annotations
@@ -15,10 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from common import arguments, finish
-from rttrr_pin.kernel.emit import emitter
-from rttrr_pin.kernel.expression import Graph, Op
-from rttrr_pin.kernel.program import Field, Program
-from rttrr_pin.kernel.sincos import COSINE, LARGEST, SINE
+from rttrr_pin.compile.emit import emitter
+from rttrr_pin.compile.expression import Graph, Op
+from rttrr_pin.compile.program import Field, Program
+from rttrr_pin.compile.sincos import COSINE, LARGEST, SINE
 
 Array = NDArray[np.float64]
 

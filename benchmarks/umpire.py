@@ -22,15 +22,15 @@ from numpy.typing import NDArray
 import rttrr_pin
 from common import arguments, finish
 from rttrr_pin import Robot
-from rttrr_pin.certify import Certificate, certify
-from rttrr_pin.certify.settle import nearest
-from rttrr_pin.certify.umpire import STRAIGHT_FROM
 from rttrr_pin.errors import InputError
-from rttrr_pin.oracles import Evaluation, make_oracle
-from rttrr_pin.validate import Sampler
-from rttrr_pin.validate.compare import Comparison
-from rttrr_pin.validate.ours import Ours
-from rttrr_pin.validate.states import States
+from rttrr_pin.exact import Certificate, certify
+from rttrr_pin.exact.adjudication import nearest
+from rttrr_pin.exact.enclosures import STRAIGHT_FROM
+from rttrr_pin.implementations import Evaluation, make_oracle
+from rttrr_pin.validation import Sampler
+from rttrr_pin.validation.compare import Comparison
+from rttrr_pin.validation.ours import Ours
+from rttrr_pin.validation.states import States
 
 ROBOTS = {"rttrr": "RTTRR", "example:panda": "Panda with fingers", "example:talos_reduced": "Talos reduced"}
 

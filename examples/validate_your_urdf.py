@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 
 import rttrr_pin
-from rttrr_pin.validate import compare_state, validate
+from rttrr_pin.validation import compare_state, validate
 
 robot = rttrr_pin.load(sys.argv[1] if len(sys.argv) > 1 else "rttrr")
 outcome = validate(robot, states=2000, payload="random")

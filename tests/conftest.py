@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 import rttrr_pin
-from chains import EXAMPLES
 from rttrr_pin import Robot
-from rttrr_pin.kernel import cache
+from rttrr_pin.compile import cache
+from support.serial_chains import EXAMPLES
 
 
 @pytest.fixture(scope="session", autouse=True)

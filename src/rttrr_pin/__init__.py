@@ -7,9 +7,10 @@
 
 from __future__ import annotations
 
+from rttrr_pin.core.joint import Drive
+from rttrr_pin.core.wrench import LinkWrenches, Wrench
 from rttrr_pin.errors import RttrrError
 from rttrr_pin.loading import load, load_all
-from rttrr_pin.model import Drive, LinkWrenches, Wrench
 from rttrr_pin.robot import Robot
 
 __version__ = "0.1.0"

@@ -1,4 +1,4 @@
-"""The command line: parses, calls, and turns results into exit codes; no mathematics.
+"""The command line: a table of commands; each is loaded when it is called.
 
 Exit codes: 0 agree, 1 disagree, 2 unusable input, 130 interrupted.
 """
@@ -6,28 +6,51 @@ Exit codes: 0 agree, 1 disagree, 2 unusable input, 130 interrupted.
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from importlib import import_module
 from typing import Annotated, Any
 
 import typer
 from rich.console import Console
+from typer.core import TyperGroup
 
-from rttrr_pin.commands.audit import audit
-from rttrr_pin.commands.derive import derive
-from rttrr_pin.commands.inspect import inspect
-from rttrr_pin.commands.new import new
-from rttrr_pin.commands.output import AGREE, DISAGREE, INTERRUPTED, UNUSABLE, discard_stdout
-from rttrr_pin.commands.validate import validate
+from rttrr_pin.errors import ModelMismatchError, RttrrError
+from rttrr_pin.reporting.output import AGREE, DISAGREE, INTERRUPTED, UNUSABLE, discard_stdout
 
 UsageError: Any = typer.BadParameter.__base__
 """Typer brings its own copy of click and does not export this class."""
 
-COMMANDS: tuple[Callable[..., int], ...] = (validate, audit, derive, inspect, new)
-"""A new command is a module in `commands` and an entry here."""
+COMMANDS = {
+    "validate": "rttrr_pin.validation.command:validate",
+    "audit": "rttrr_pin.auditing.command:audit",
+    "derive": "rttrr_pin.derivation.command:derive",
+    "inspect": "rttrr_pin.inspection.command:inspect",
+    "new": "rttrr_pin.modular_arm.command:new",
+}
+"""By name, the function that parses, calls and returns an exit code; a new command is an entry here."""
+
+
+class LazyGroup(TyperGroup):
+    """Commands that are imported when they are asked for: `inspect` never loads what `validate` needs."""
+
+    def list_commands(self, ctx: Any) -> list[str]:
+        """Their names, in the order of the table."""
+        return list(COMMANDS)
+
+    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+        """The command of that name; None where there is none."""
+        if cmd_name not in COMMANDS:
+            return None
+        module, name = COMMANDS[cmd_name].split(":")
+        one = typer.Typer(add_completion=False, rich_markup_mode=None)
+        one.command(cmd_name)(getattr(import_module(module), name))
+        return typer.main.get_command(one)
+
 
 app = typer.Typer(
     name="rttrr-pin",
     help="Validates rigid-body dynamics: a hand-written Newton-Euler recursion against Pinocchio, link by link.",
+    cls=LazyGroup,
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -47,10 +70,6 @@ def _program(
         raise typer.Exit(AGREE)
 
 
-for _command in COMMANDS:
-    app.command()(_command)
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line.
 
@@ -60,15 +79,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns:
         The exit code.
     """
-    from rttrr_pin.errors import ModelMismatchError, RttrrError
-
     errors = Console(stderr=True, markup=False, highlight=False, soft_wrap=True)
     try:
         code = app(args=None if arguments is None else list(arguments), standalone_mode=False, prog_name="rttrr-pin")
         sys.stdout.flush()
     except UsageError as error:
-        told = error.format_message()
-        errors.print(told if told.startswith("Usage") else f"error: {told}\nsee: {error.ctx.command_path} --help")
+        message = error.format_message()
+        errors.print(
+            message if message.startswith("Usage") else f"error: {message}\nsee: {error.ctx.command_path} --help"
+        )
         code = UNUSABLE
     except ModelMismatchError as error:
         errors.print(f"DISAGREE: {error}")

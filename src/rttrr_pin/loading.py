@@ -7,11 +7,11 @@ from typing import Literal
 
 from numpy.typing import ArrayLike
 
+from rttrr_pin.core.inputs import vectors
+from rttrr_pin.core.model import STANDARD_GRAVITY
 from rttrr_pin.errors import InputError, ShapeError
-from rttrr_pin.model import STANDARD_GRAVITY
-from rttrr_pin.model.inputs import vectors
-from rttrr_pin.model.sources import AnySource, robots_in
 from rttrr_pin.robot import Robot
+from rttrr_pin.urdf.sources import AnySource, robots_in
 
 
 def load(
@@ -40,7 +40,7 @@ def load(
         ShapeError, NumberError: gravity is no vector of three finite numbers.
         InputError: the source is of another type, an extra is missing, or base is neither "fixed" nor "floating".
     """
-    from rttrr_pin.model.urdf import read_urdf  # loads yourdfpy, which takes long
+    from rttrr_pin.urdf.reader import read_urdf  # loads yourdfpy, which takes long
 
     field = vectors("gravity", gravity)
     if field.ndim != 1:

@@ -11,17 +11,21 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.arithmetic import FLOAT, Load, bodies, evaluate
-from rttrr_pin.batch import RESULTS, batch_shape, blocks, check_overflow, empty_wrenches, fill, flat
+from rttrr_pin.core.batch import RESULTS, batch_shape, blocks, check_overflow, empty_wrenches, fill, flat
+from rttrr_pin.core.dynamics import bodies, evaluate
+from rttrr_pin.core.inputs import Coordinates, coordinates, finite, real, vectors
+from rttrr_pin.core.joint import Drive
+from rttrr_pin.core.model import Model
+from rttrr_pin.core.payload import Load
+from rttrr_pin.core.scalars import FLOAT
+from rttrr_pin.core.wrench import LinkWrenches, Wrench
 from rttrr_pin.errors import InputError, NumberError, UnknownNameError
-from rttrr_pin.model import Drive, LinkWrenches, Model, Wrench
-from rttrr_pin.model.inputs import Coordinates, coordinates, finite, real, vectors
 
 if TYPE_CHECKING:
-    from rttrr_pin.certify.umpire import Certificate
-    from rttrr_pin.certify.written import Numbers
-    from rttrr_pin.inspect import Inspection
-    from rttrr_pin.kernel import Kernel
+    from rttrr_pin.compile import Kernel
+    from rttrr_pin.exact.enclosures import Certificate
+    from rttrr_pin.exact.parameters import Numbers
+    from rttrr_pin.inspection import Inspection
 
 Array = NDArray[np.float64]
 
@@ -153,7 +157,7 @@ class Robot:
             InputError: there are no such numbers: the robot has no file, or was altered since it was read.
             ShapeError, NumberError, UnknownNameError, MissingJointError: as in `inverse_dynamics`.
         """
-        from rttrr_pin.certify.umpire import certify
+        from rttrr_pin.exact.enclosures import certify
 
         q, v, a = (coordinates(name, x, self.model.moving) for name, x in (("q", q), ("v", v), ("a", a)))
         return certify(self.model, q, v, a, self._loads(payload), numbers)
@@ -175,7 +179,7 @@ class Robot:
             UnknownNameError: there is no such output, or no such emitter.
             InputError: no output, or one twice; or the emitter cannot be imported.
         """
-        from rttrr_pin.kernel import Kernel
+        from rttrr_pin.compile import Kernel
 
         name = (outputs, emitter) if isinstance(outputs, str) else (tuple(outputs), emitter)
         if name not in self._kernels:
@@ -246,7 +250,7 @@ class Robot:
 
     def inertial_parameters(self) -> Array:
         """The parameters that `regressor` multiplies, (10 links,), ten for each link."""
-        from rttrr_pin.kernel.lump import Inertia
+        from rttrr_pin.compile.regrouping import Inertia
 
         found: list[float] = []
         for link in map(Inertia.of, bodies(self.model, FLOAT)):
@@ -350,7 +354,7 @@ class Robot:
             InputError: the robot was made from numbers and has no file.
             UnknownNameError: a prefix fits no check.
         """
-        from rttrr_pin.inspect import inspect
+        from rttrr_pin.inspection import inspect
 
         return inspect(self.model.urdf, self.name, None if folder is None else Path(folder), select, ignore)
 

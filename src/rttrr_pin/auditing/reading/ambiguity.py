@@ -1,0 +1,179 @@
+r"""Where the print leaves open what it says: each way to read the signs and the factors of a product.
+
+The tables of this module are its functions: each takes a list of factors and the place of one of them, and gives the
+lists that the print may mean there, the most literal first.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from math import prod
+
+from rttrr_pin.auditing.reading.grammar import UnreadableError
+from rttrr_pin.auditing.reading.nodes import Atom, Factor, Group
+from rttrr_pin.auditing.reading.vocabulary import FUNCTIONS, Vocabulary
+
+MOST = 64
+"""Readings of one product; more than that are no reading but a riddle."""
+
+Factors = tuple[Factor, ...]
+Ways = list[tuple[Factors, str]]
+"""Lists of factors, each with the note that says what was decided."""
+
+
+def ways(factors: Factors, vocabulary: Vocabulary) -> Ways:
+    """Every way to read a product's factors, the most literal first.
+
+    Raises:
+        UnreadableError: there are too many.
+    """
+    found: Ways = [(factors, "")]
+    for i in range(len(factors)):
+        for rule in RULES:
+            found = [
+                (changed, joined(note, more)) for kept, note in found for changed, more in rule(kept, i, vocabulary)
+            ]
+        if len(found) > MOST:
+            message = f"this can be read in more than {MOST} ways; set it apart with brackets"
+            raise UnreadableError(message, factors[0].start)
+    return found
+
+
+def joined(*notes: str) -> str:
+    """Notes as one."""
+    return "; ".join(note for note in notes if note)
+
+
+def _power_or_prefix(factors: Factors, i: int, vocabulary: Vocabulary) -> Ways:
+    r"""`\dot{q}_1^3 r_{C_{3y}}`: the 3 may be the power of the rate or stand before the r."""
+    same: Ways = [(factors, "")]
+    factor, following = factors[i], factors[i + 1] if i + 1 < len(factors) else None
+    atom = following.atom if following is not None else None
+    if following is None or atom is None or following.operator or following.prefix or (factor.exponent or 0) < 1:
+        return same
+    led = replace(atom, prefix=str(factor.exponent))
+    if led not in vocabulary:
+        return same
+    moved = _put(factors, i, replace(factor, exponent=None), replace(following, prefix=led.prefix))
+    power = f"the power {factor.exponent} of {_shown(factor)}"
+    prefix = f"{led}, the {factor.exponent} standing before it"
+    if isinstance(factor.body, Group):
+        return same if atom in vocabulary else [(moved, f"read as {prefix}; printed as {power}")]
+    return [(factors, f"read as {power}; it may be {prefix}"), (moved, f"read as {prefix}; it may be {power}")]
+
+
+def _stray_prefix(factors: Factors, i: int, vocabulary: Vocabulary) -> Ways:
+    r"""`c q_5 \cdot {}^4 \dot{q}_4`: a rate has no frame, so the 4 is nothing, or the power of what stands before."""
+    factor = factors[i]
+    if not factor.prefix or not _cannot_have_one(factors, i, vocabulary):
+        return [(factors, "")]
+    bare = _put(factors, i, replace(factor, prefix=""))
+    ignored = f"the superscript {factor.prefix} before {_shown(bare[i])} ignored"
+    j = i - 2 if i > 1 and takes_argument(factors, i - 2, vocabulary) else i - 1
+    before = "".join(_shown(earlier) for earlier in factors[j:i]) if i else ""
+    number = factor.prefix.isdecimal() and int(factor.prefix) > 0
+    if not i or not number or any(f.exponent is not None or isinstance(f.body, Group) for f in factors[j:i]):
+        return [(bare, ignored)]
+    power = f"the power {factor.prefix} of {before}"
+    raised = _put(bare, j, replace(factors[j], exponent=int(factor.prefix)))
+    return [
+        (bare, f"{ignored}; it may be {power}"),
+        (raised, f"the superscript before {_shown(bare[i])} read as {power}; it may be nothing"),
+    ]
+
+
+def _cannot_have_one(factors: Factors, i: int, vocabulary: Vocabulary) -> bool:
+    atom = factors[i].atom
+    if atom is None:
+        return True
+    bare = replace(atom, prefix="")
+    if atom in vocabulary:
+        return False
+    return bare in vocabulary or vocabulary.indexed_angle(bare) is not None or takes_argument(factors, i, vocabulary)
+
+
+def _symbol_or_function(factors: Factors, i: int, vocabulary: Vocabulary) -> Ways:
+    """`c q_4` where c is a symbol of the text as well."""
+    atom = factors[i].atom
+    if atom is None or atom not in vocabulary or not takes_argument(factors, i, vocabulary):
+        return [(factors, "")]
+    symbol = _put(factors, i, replace(factors[i], symbol=True))
+    if isinstance(factors[i + 1].body, Group):
+        return [(symbol, "")]
+    angle = _shown(factors[i + 1])
+    return [
+        (symbol, f"{atom} read as a symbol; it may be the function of {angle}"),
+        (factors, f"{atom} read as the function of {angle}; it may be a symbol"),
+    ]
+
+
+RULES: tuple[Callable[[Factors, int, Vocabulary], Ways], ...] = (
+    _symbol_or_function,
+    _power_or_prefix,
+    _stray_prefix,
+)
+"""What may be open at one factor; a new kind of doubt is one more function."""
+
+
+def takes_argument(factors: Factors, i: int, vocabulary: Vocabulary) -> bool:
+    r"""Whether a factor is a cosine or sine whose angle follows: `c q_4`, `c(q_1 + q_2)`, `\cos q_4`."""
+    factor, following = factors[i], factors[i + 1] if i + 1 < len(factors) else None
+    atom = factor.body
+    if not isinstance(atom, Atom) or factor.symbol or atom != Atom(atom.letters) or atom.letters not in FUNCTIONS:
+        return False
+    if following is None or following.operator:
+        return False
+    if isinstance(following.body, Group):
+        return atom.letters.startswith("\\") or sums_coordinates(following.body, vocabulary) is not None
+    return isinstance(following.body, Atom) and vocabulary.coordinate(following.body) is not None
+
+
+def sums_coordinates(group: Group, vocabulary: Vocabulary) -> list[int] | None:
+    """The indices of the coordinates that a bracket adds, each once; None where it is no such sum."""
+    indices: list[int] = []
+    for product in group.products:
+        factor = product.factors[0]
+        index = vocabulary.coordinate(factor.atom) if factor.atom is not None else None
+        plus = all(sign == 1 for line in product.signs for sign in line)
+        if len(product.factors) > 1 or index is None or index in indices or factor.exponent is not None or not plus:
+            return None
+        indices.append(index)
+    return indices if not group.divisor else None
+
+
+def signs(lines: Sequence[Sequence[int]]) -> list[tuple[int, str]]:
+    """Every way to read the signs before a term, the most literal first.
+
+    Args:
+        lines: the signs, 1 or -1, of each line that has some; a sign is repeated where a sum is broken.
+    """
+    if not lines:
+        return [(1, "")]
+    values = [prod(line) for line in lines]
+    if any(before != after for before, after in pairwise(values)):
+        shown = " and ".join("+" if value > 0 else "-" for value in values)
+        last = values[-1]
+        return [
+            (last, f"the signs {shown} around the line break disagree: read as the new line's; it may be the other"),
+            (-last, f"the signs {shown} around the line break disagree: read as the old line's; it may be the other"),
+        ]
+    doubled = [line for line in lines if -prod(line) in line]
+    if not doubled:
+        return [(values[0], "")]
+    shown = " ".join("+" if sign > 0 else "-" for sign in doubled[0])
+    return [
+        (values[0], f"the signs {shown} read as their product; one may be a slip"),
+        (-values[0], f"of the signs {shown} one read as a slip; it may be their product"),
+    ]
+
+
+def _put(factors: Factors, i: int, *new: Factor) -> Factors:
+    return (*factors[:i], *new, *factors[i + len(new) :])
+
+
+def _shown(factor: Factor) -> str:
+    if isinstance(factor.body, Group):
+        return "the bracket"
+    return str(factor.atom if factor.atom is not None else factor.body)

@@ -1,0 +1,167 @@
+r"""The layout of a display: what it says of which component, by rows, matrices, equals signs and line breaks.
+
+Everything here works on the tokens of the grammar. A long sum is broken over rows, and its sign is printed at the end
+of a row, at the start of the next, or at both; a component ends where a matrix row or a line ends without one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import combinations, pairwise
+
+from lark import Token
+
+from rttrr_pin.auditing.reading.grammar import SHOWN, UnreadableError, end_of, start_of, tokens_of
+from rttrr_pin.auditing.reading.rows import Row, rows_of
+
+MOST = 200
+"""Splits of one display."""
+
+CLOSES = {"RPAR": "LPAR", "RSQB": "LSQB", "RCURLY": "LCURLY"}
+"""Which bracket each closing one ends."""
+
+OPERATORS = ("TIMES", "STAR", "SLASH")
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """What is printed for one component.
+
+    Attributes:
+        tokens: of its sum.
+        start, end: where it stands.
+        fault: why its rows do not make one sum; None where they do.
+    """
+
+    tokens: tuple[Token, ...]
+    start: int
+    end: int
+    fault: UnreadableError | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """One way to divide a display: its parts, and what had to be decided."""
+
+    parts: tuple[Part, ...]
+    note: str = ""
+
+
+def layouts(text: str, components: int) -> list[Layout]:
+    """The ways to divide a display into components.
+
+    Args:
+        text: of the whole display.
+        components: how many it states.
+
+    Raises:
+        UnreadableError: the display has another number of components, or is no display of equations.
+    """
+    rows, matrix = rows_of(tokens_of(text))
+    if not rows:
+        raise UnreadableError("there is no equation here", 0)
+    return [_layout(rows, starts, note) for starts, note in _divisions(text, rows, matrix, components)]
+
+
+def _divisions(text: str, rows: Sequence[Row], matrix: bool, components: int) -> list[tuple[tuple[int, ...], str]]:
+    """The rows at which components after the first may begin, with notes."""
+    breaks = range(1, len(rows))
+    wanted = components - 1
+    stated = [i for i in breaks if rows[i].stated]
+    unsigned = [i for i in breaks if not rows[i - 1].open_end]
+    certain = [i for i in unsigned if not rows[i].signed]
+    if stated:
+        unsigned = certain = stated
+    if wanted == 0 and not matrix and not stated:
+        return [((), "")]
+    if matrix and len(unsigned) == wanted:
+        return [(tuple(unsigned), "")]
+    if len(certain) == wanted:
+        return [(tuple(certain), "")]
+    if len(unsigned) == wanted:
+        return [(tuple(unsigned), "components divided where a line ends without a sign")]
+    if len(certain) > wanted or len(breaks) < wanted:
+        raise UnreadableError(
+            f"the display shows {len(certain) + 1} components in {len(rows)} rows, expected {components}; "
+            "state the right number of components, or end a row that goes on with its sign",
+            start_of(rows[0].tokens[0]),
+        )
+    return _guessed(text, rows, certain, wanted)
+
+
+def _guessed(text: str, rows: Sequence[Row], certain: Sequence[int], wanted: int) -> list[tuple[tuple[int, ...], str]]:
+    """The certain boundaries, and each choice of line breaks for those that are lost."""
+    others = [i for i in range(1, len(rows)) if i not in certain]
+    found: list[tuple[tuple[int, ...], str]] = []
+    for added in combinations(others, wanted - len(certain)):
+        if len(found) == MOST:
+            raise UnreadableError(f"the display can be divided in more than {MOST} ways", start_of(rows[0].tokens[0]))
+        starts = tuple(sorted((*certain, *added)))
+        places = " and ".join(
+            f"{starts.index(i) + 2} begins with row {i + 1}, `{_beginning(text, rows[i])}`" for i in added
+        )
+        note = f"the boundary is not printed: component {places}"
+        if any(rows[i - 1].open_end for i in added):
+            note += "; the sign at the end of the row before it left out"
+        found.append((starts, note))
+    return found
+
+
+def _beginning(text: str, row: Row) -> str:
+    start = start_of(row.tokens[0])
+    words = text[start : start + SHOWN].split(" ")
+    return " ".join(" ".join(words[:-1] if len(words) > 1 else words).split())  # the last may be cut in two
+
+
+def _layout(rows: Sequence[Row], starts: Sequence[int], note: str) -> Layout:
+    notes = [note] if note else []
+    parts: list[Part] = []
+    for begin, stop in pairwise((0, *starts, len(rows))):
+        lines = [list(row.tokens) for row in rows[begin:stop]]
+        start, end = start_of(lines[0][0]), end_of(lines[-1][-1])
+        if stop < len(rows) and rows[stop - 1].open_end:
+            lines[-1] = lines[-1][:-1]
+        alone = _unpaired(lines) if starts else []  # around components that are divided, brackets are the vector's
+        notes += [f"the bracket `{token}` of component {len(parts) + 1} has no partner, left out" for token in alone]
+        parts.append(_part(lines, start, end))
+    return Layout(tuple(parts), "; ".join(notes))
+
+
+def _unpaired(lines: list[list[Token]]) -> list[Token]:
+    """Takes out brackets without a partner that open a line or end one; gives them."""
+    waiting: list[tuple[Token, list[Token]]] = []
+    alone: list[tuple[Token, list[Token]]] = []
+    for line in lines:
+        for token in line:
+            if token.type in CLOSES.values():
+                waiting.append((token, line))
+            elif token.type in CLOSES:
+                if waiting and waiting[-1][0].type == CLOSES[token.type]:
+                    waiting.pop()
+                else:
+                    alone.append((token, line))
+    taken = [(token, line) for token, line in alone if token is line[-1]]
+    taken += [(token, line) for token, line in waiting if token is line[0]]
+    for token, line in taken:
+        line[:] = [other for other in line if other is not token]
+    return [token for token, _ in taken]
+
+
+def _part(lines: Iterable[list[Token]], start: int, end: int) -> Part:
+    """The lines of a component as one sum; the grammar takes a break only between signs."""
+    tokens: list[Token] = []
+    for line in (line for line in lines if line):
+        if not tokens or tokens[-1].type in CLOSES.values() or line[0].type in CLOSES:
+            tokens += line
+        elif tokens[-1].type == "SIGN" or line[0].type == "SIGN":
+            tokens += [Token("BREAK", "\\\\", end_of(tokens[-1])), *line]
+        elif line[0].type in OPERATORS or tokens[-1].type in OPERATORS:
+            tokens += line[1:] if tokens[-1].type == line[0].type else line
+        else:
+            message = (
+                "neither does the line before end with a sign nor does this one begin with one; write the sign, "
+                "or state more components"
+            )
+            return Part((), start, end, UnreadableError(message, start_of(line[0])))
+    return Part(tuple(tokens), start, end)

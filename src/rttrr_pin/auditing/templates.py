@@ -1,0 +1,111 @@
+"""Symbols by the dozen: `{}^<i>r_{C_{<i><x>}}` stands for that of every link and axis."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import product
+
+from rttrr_pin.auditing.tables import Table
+from rttrr_pin.derivation.chain import AXES
+from rttrr_pin.derivation.symbols import (
+    ACCELERATION,
+    FORCE,
+    INERTIA,
+    LENGTH,
+    MASS,
+    MOMENT,
+    NUMBER,
+    Dimension,
+    Role,
+    Symbol,
+)
+
+DIMENSIONS: Mapping[str, Dimension] = {
+    "number": NUMBER,
+    "angle": NUMBER,
+    "length": LENGTH,
+    "mass": MASS,
+    "inertia": INERTIA,
+    "acceleration": ACCELERATION,
+    "force": FORCE,
+    "moment": MOMENT,
+}
+"""What a symbol may measure."""
+
+PAIRS = ("xy", "xz", "yz")
+
+RESERVED = re.compile(r"(q|v|a|s|c|sign)_j?\d+(_\d+)*")
+"""Names that symbols of motion have."""
+
+KEYS = ("name", "latex", "dimension", "equal", "i", "k")
+
+
+@dataclass(frozen=True, slots=True)
+class Letter:
+    """A symbol as a table declares it.
+
+    Attributes:
+        symbol: the symbol.
+        spellings: how it is printed; corrections use the first.
+        equal: the name of the letter that it is equal to, as J_yx is to J_xy; empty for most.
+    """
+
+    symbol: Symbol
+    spellings: tuple[str, ...]
+    equal: str = ""
+
+
+def letters_in(table: Table, links: int, latex: bool = True) -> Iterator[Letter]:
+    """The symbols that an entry of [[symbol]] stands for.
+
+    Args:
+        table: the entry.
+        links: how many links `<i>` runs over.
+        latex: whether spellings are LaTeX.
+
+    Raises:
+        EquationError: the entry lacks a name or has a dimension that does not exist.
+    """
+    table.only(KEYS)
+    name = table.get("name", str)
+    spellings = table.texts("latex", default=[name])
+    dimension = table.get("dimension", str)
+    if dimension not in DIMENSIONS:
+        raise table.error(f"dimension is {dimension!r}: expected {', '.join(DIMENSIONS)}")
+    for values in _combinations(table, (name, *spellings), links):
+        identifier = filled(name, values)
+        if not identifier.isidentifier():
+            raise table.error(f"name is {identifier!r}: expected letters, digits and _, such as r_C1x")
+        if RESERVED.fullmatch(identifier):
+            raise table.error(
+                f"name is {identifier!r}, which stands for a coordinate, a rate, an acceleration, a sine or a cosine: "
+                "choose another name; how it is printed is for `latex` to say"
+            )
+        printed = tuple(dict.fromkeys(filled(spelling, values, latex) for spelling in spellings))
+        symbol = Symbol(identifier, printed[0], Role.PARAMETER, DIMENSIONS[dimension])
+        yield Letter(symbol, printed, filled(table.get("equal", str, ""), values))
+
+
+def _combinations(table: Table, texts: Sequence[str], links: int) -> Iterator[dict[str, str]]:
+    """All values of the placeholders that occur."""
+    ranges: dict[str, Sequence[str]] = {
+        "i": [str(i) for i in table.get("i", list, list(range(1, links + 1)))],
+        "k": [str(k) for k in table.get("k", list, [])],
+        "x": AXES,
+        "xy": PAIRS,
+    }
+    used = [key for key in ranges if any(f"<{key}>" in text or f"<{key[::-1]}>" in text for text in texts)]
+    for values in product(*(ranges[key] for key in used)):
+        yield dict(zip(used, values, strict=True))
+
+
+def filled(text: str, values: Mapping[str, str], latex: bool = False) -> str:
+    """A template with values for its placeholders; in LaTeX, numbers of several digits get braces."""
+    for key, value in values.items():
+        shown = f"{{{value}}}" if latex and value.isdigit() and len(value) > 1 else value
+        text = text.replace(f"<{key}>", shown)
+        if len(key) > 1:
+            text = text.replace(f"<{key[::-1]}>", value[::-1])
+    return text

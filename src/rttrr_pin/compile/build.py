@@ -1,0 +1,130 @@
+"""What is compiled for a robot: straight lines where they stay short, calls of steps where the robot is too large."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from itertools import accumulate
+
+from rttrr_pin.compile.bounds import with_bounds
+from rttrr_pin.compile.call_program import Schedule
+from rttrr_pin.compile.expression import Graph, GraphFullError
+from rttrr_pin.compile.outlining import Recorder
+from rttrr_pin.compile.program import Program
+from rttrr_pin.compile.quantities import BOUND, QUANTITIES
+from rttrr_pin.compile.register_allocation import arranged
+from rttrr_pin.compile.simplify import simplify
+from rttrr_pin.compile.summation import in_chains
+from rttrr_pin.compile.trace import KNOWING, TRACING, PayloadSlot, fields, outputs_of, record, trace
+from rttrr_pin.core.joint import JointType
+from rttrr_pin.core.model import Model
+from rttrr_pin.core.scalars import Arithmetic
+from rttrr_pin.errors import InputError
+
+STRAIGHT_LINE = 20_000
+"""Operations, as traced, beyond which a program is made of calls: straight lines would take seconds to compile."""
+
+NODES = 3
+"""Nodes that the tracer may record for each operation that an output needs: more than it does in chains about any axes,
+and in the RTTRR arm, most of whose numbers are zero. A robot with more is not traced to its end."""
+
+LONGEST = 4_000_000
+"""Nodes of what cannot be made of calls: beyond it, compiling takes more minutes and memory than anyone has."""
+
+WITH_BOUNDS = 5
+"""Nodes of a program with bounds for each one without."""
+
+
+def build(
+    model: Model,
+    outputs: Sequence[str],
+    payloads: Sequence[PayloadSlot] = (),
+    straight_line: int | None = STRAIGHT_LINE,
+    fused: bool = False,
+) -> Program | Schedule:
+    """The program of a robot, of the kind that suits its size.
+
+    Args:
+        model: the robot.
+        outputs: names from `QUANTITIES`.
+        payloads: where payloads act.
+        straight_line: operations, as traced, beyond which it is made of calls; None for never.
+        fused: whether products may be fused with sums; without, operations can be counted.
+
+    Returns:
+        Straight lines or calls, simplified, with sums in chains.
+
+    Raises:
+        InputError: the robot is too large for these outputs.
+    """
+    if any(name.endswith(BOUND) for name in outputs):
+        return _bounded(model, outputs, payloads, fused)
+    if straight_line is None or not all(QUANTITIES[name].by_steps for name in outputs):
+        return in_chains(simplify(_whole(model, outputs, payloads)), fused)
+    try:
+        program = trace(model, outputs, payloads, most=straight_line * NODES)
+    except GraphFullError:
+        return schedule(model, outputs, payloads, fused=fused)
+    short = program.operations.total <= straight_line
+    return in_chains(simplify(program), fused) if short else schedule(model, outputs, payloads, fused=fused)
+
+
+def _bounded(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot], fused: bool) -> Program:
+    """Values and bounds on their rounding."""
+    plain = tuple(dict.fromkeys(name.removesuffix(BOUND) for name in outputs))
+    program = simplify(_whole(model, plain, payloads, KNOWING, WITH_BOUNDS))
+    chained = in_chains(program, fused)
+    return with_bounds(chained, outputs_of(model, outputs), _quaternions(model, program), fused)
+
+
+def _quaternions(model: Model, program: Program) -> tuple[int, ...]:
+    """Where each quaternion begins among the inputs, of which q are the first."""
+    if not any(field.name == "q" for field in program.inputs):
+        return ()
+    ends = accumulate(joint.nq for joint in model.moving)
+    return tuple(end - 4 for end, joint in zip(ends, model.moving, strict=True) if joint.type is JointType.FLOATING)
+
+
+def _whole(
+    model: Model,
+    outputs: Sequence[str],
+    payloads: Sequence[PayloadSlot],
+    arithmetic: Arithmetic = TRACING,
+    growth: int = 1,
+) -> Program:
+    """Straight lines, however long, but no longer than can be compiled once they have so many times the nodes."""
+    most = LONGEST // growth
+    try:
+        return trace(model, outputs, payloads, most=most, arithmetic=arithmetic)
+    except GraphFullError:
+        names = [name for name in outputs if not QUANTITIES[name].by_steps] or outputs
+        raise InputError(
+            f"{', '.join(names)} of robot {model.name!r} with {model.nv} degrees of freedom: the program has more than "
+            f"{most} nodes, expected fewer; take differences of tau, or a smaller part of the robot"
+        ) from None
+
+
+def schedule(
+    model: Model,
+    outputs: Sequence[str],
+    payloads: Sequence[PayloadSlot] = (),
+    lumped: bool = True,
+    fused: bool = False,
+) -> Schedule:
+    """A robot as calls, however large or small it is.
+
+    Args:
+        model: the robot.
+        outputs: names from `QUANTITIES`, of quantities with `by_steps`.
+        payloads: where payloads act.
+        lumped: whether inertia may be moved between links where that leaves the outputs as they are.
+        fused: whether products may be fused with sums.
+
+    Returns:
+        Calls of steps, each step simplified, with sums in chains.
+    """
+    recorder = Recorder(Graph())
+    arithmetic = replace(TRACING, call=recorder.call)
+    results = record(recorder.graph, arithmetic, model, outputs, payloads, lumped)
+    made = arranged(recorder, results, fields(model, outputs, payloads), outputs_of(model, outputs))
+    return replace(made, steps=tuple(replace(step, program=in_chains(step.program, fused)) for step in made.steps))

@@ -1,0 +1,100 @@
+"""A program as a sequence of calls of few steps: what a robot too large for straight lines is made of.
+
+A step is a program of its own, such as the step outwards over a revolute joint. Its inputs are columns (a number for
+each state) and numbers of the robot (the same for all states). A call says where the columns lie and which numbers
+these are, so that a robot of any size is a table, and the code stays as long as its different steps are.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.compile.program import Field, Program, Widths, inputs_of
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """What many calls share.
+
+    Attributes:
+        program: from inputs to results.
+        columns: places of its inputs that are columns.
+        numbers: places of its inputs that are numbers of the robot.
+    """
+
+    program: Program
+    columns: tuple[int, ...]
+    numbers: tuple[int, ...]
+
+    @cached_property
+    def reads(self) -> tuple[tuple[int, ...], ...]:
+        """For each result the places of inputs that it depends on."""
+        return tuple(inputs_of(self.program.graph, (x,)) for x in self.program.results)
+
+
+@dataclass(frozen=True, slots=True)
+class Call:
+    """One step, somewhere.
+
+    Attributes:
+        step: its index.
+        columns: which columns it reads.
+        numbers: what stands for the numbers.
+        results: which columns it writes; one that it reads may be among them.
+    """
+
+    step: int
+    columns: tuple[int, ...]
+    numbers: tuple[float, ...]
+    results: tuple[int, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Schedule(Widths):
+    """A robot's program as calls.
+
+    Attributes:
+        steps: the programs that are called.
+        calls: in order.
+        inputs: the arrays it reads: the first columns.
+        outputs: the arrays it writes: the columns behind those.
+        between: the count of further columns, which hold what is passed on.
+        unread: places of inputs that no output depends on.
+    """
+
+    steps: tuple[Step, ...]
+    calls: tuple[Call, ...]
+    inputs: tuple[Field, ...]
+    outputs: tuple[Field, ...]
+    between: int
+    unread: tuple[int, ...]
+
+    @property
+    def columns(self) -> int:
+        """The count of all columns."""
+        return self.width_in + self.width_out + self.between
+
+    @property
+    def operations(self) -> int:
+        """What one state costs, sines and cosines left out."""
+        each = [step.program.operations.total for step in self.steps]
+        return sum(each[call.step] for call in self.calls)
+
+    def evaluate(self, columns: Sequence[Array]) -> list[Array | float]:
+        """The outputs for columns of inputs, by NumPy: slow, and the reference for what compiles the schedule."""
+        memory: list[Array | float] = [*columns, *[0.0] * (self.columns - self.width_in)]
+        for call in self.calls:
+            step = self.steps[call.step]
+            given = dict(zip(step.columns, (memory[c] for c in call.columns), strict=True))
+            given |= dict(zip(step.numbers, call.numbers, strict=True))
+            results = step.program.evaluate(given)
+            for column, result in zip(call.results, results, strict=True):
+                memory[column] = result
+        return memory[self.width_in : self.width_in + self.width_out]

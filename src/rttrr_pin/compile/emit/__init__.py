@@ -1,0 +1,106 @@
+"""From a program to something that runs: one module for each way, one line for each in the registry.
+
+An emitter turns a program into bytes that may be kept on disk, and such bytes into an executable. A new one (CUDA)
+is one new file and one line here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from importlib import import_module
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.compile.call_program import Schedule
+from rttrr_pin.compile.program import Field, Program
+from rttrr_pin.errors import InputError, UnknownNameError
+
+Array = NDArray[Any]
+"""float64 or float32 in, float64 out; (N, width) with any strides."""
+
+Task = Callable[[int, int], bool]
+"""Computes the states from start to stop; tells whether a result is not finite."""
+
+
+class Executable(Protocol):
+    """A program that can be run.
+
+    Attributes:
+        one: computes one state of float64 arrays, `one(q, v, a, tau) -> True`, or returns None where it declines (then
+            `bind` does it); None where there is no such shortcut.
+    """
+
+    one: Callable[..., bool | None] | None
+
+    def bind(self, inputs: Sequence[Array], outputs: Sequence[NDArray[np.float64]]) -> Task:
+        """The task of computing these outputs from these inputs; it may run in several threads at once."""
+        ...
+
+
+class Emitter(Protocol):
+    """A way to run programs.
+
+    Attributes:
+        name: in the registry.
+        identity: everything that its bytes depend on but the program: versions, processor.
+        calls: whether it takes schedules as well; else straight lines only, however long.
+        fuses: whether it has fused operations; else it is given none.
+    """
+
+    name: str
+    identity: str
+    calls: bool
+    fuses: bool
+
+    def emit(self, program: Program | Schedule) -> bytes:
+        """Translate a program."""
+        ...
+
+    def load(self, code: bytes, inputs: Sequence[Field], outputs: Sequence[Field]) -> Executable:
+        """Make runnable what `emit` made, now or in another process."""
+        ...
+
+
+EMITTERS = ("llvm", "numba", "numpy", "c")
+"""By preference; the module of the same name here has a function `emitter()`."""
+
+
+def emitter(name: str | None = None) -> Emitter:
+    """An emitter by name, or the first one whose compiler is there.
+
+    Raises:
+        UnknownNameError: there is none of that name.
+        InputError: its compiler is not installed.
+    """
+    if name is None:
+        return next(found for found in map(_importable, EMITTERS) if found is not None)
+    if name not in EMITTERS:
+        raise UnknownNameError("emitter", name, EMITTERS)
+    found = _importable(name)
+    if found is None:
+        raise InputError(f"emitter {name!r} cannot be imported: pip install rttrr-pin again, or take emitter='numpy'")
+    return found
+
+
+def source(name: str, program: Program, robot: str, labels: Mapping[str, Sequence[str]]) -> str:
+    """A program as text for readers and other programs, from an emitter that has a function `source` as well.
+
+    Raises:
+        UnknownNameError: there is no emitter of that name.
+        InputError: it writes none.
+    """
+    write = getattr(emitter(name), "source", None)
+    if write is None:
+        raise InputError(f"emitter {name!r} writes no source for readers: take emitter='c'")
+    text: str = write(program, robot, labels)
+    return text
+
+
+def _importable(name: str) -> Emitter | None:
+    try:
+        made: Emitter = import_module(f"{__name__}.{name}").emitter()
+    except ImportError:
+        return None
+    return made

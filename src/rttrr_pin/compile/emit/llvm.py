@@ -1,0 +1,168 @@
+"""Machine code for this processor by LLVM, through llvmlite, the part of Numba that compiles.
+
+Straight from the program to LLVM's assembly: vectors of states are written as vectors, so that nothing is left to the
+luck of an optimiser, and what takes Numba long, inferring types line by line, does not arise.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from collections.abc import Callable, Sequence
+from functools import cache
+from typing import Any
+
+import llvmlite
+import llvmlite.binding as llvm
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.compile.call_program import Schedule
+from rttrr_pin.compile.emit import Array, Task
+from rttrr_pin.compile.emit.fastcall import python_call, python_function
+from rttrr_pin.compile.emit.llvm_body import body
+from rttrr_pin.compile.emit.llvm_calls import calls
+from rttrr_pin.compile.emit.llvm_vectors import Layout
+from rttrr_pin.compile.program import Field, Program
+
+BLOCK = 64
+"""States in a block."""
+
+CACHE_LINES = 2 * 8
+"""Float64 by which columns are set apart beyond the block, so that they do not fall on the same lines of the cache."""
+
+FIRST_LEVEL = 24 * 1024
+"""Bytes that a block's inputs and outputs may take, to stay in the first level of the cache with room for the rest."""
+
+SECOND_LEVEL = 512 * 1024
+"""Bytes that all columns of a block may take in a schedule, which goes through them twice."""
+
+OPTIMISATION = 2
+
+
+@cache
+def _initialised() -> None:
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+
+
+def _processor() -> tuple[str, str]:
+    """Name and features of the processor to compile for; Numba's variables choose another."""
+    name = os.environ.get("NUMBA_CPU_NAME") or llvm.get_host_cpu_name()
+    named = "NUMBA_CPU_NAME" in os.environ
+    features = os.environ.get("NUMBA_CPU_FEATURES", "" if named else llvm.get_host_cpu_features().flatten())
+    return name, features
+
+
+def lanes(name: str, features: str) -> int:
+    """How many float64 the processor computes at once."""
+    if "+avx512f" in features.split(","):
+        return 8
+    if "+avx2" in features.split(","):
+        return 4
+    if features:
+        return 2
+    wide = ("avx512", "icelake", "sapphirerapids", "graniterapids", "emeraldrapids", "cascadelake", "znver4", "znver5")
+    return 8 if any(word in name for word in wide) else 4
+
+
+class LlvmEmitter:
+    """Compiles for the processor at hand."""
+
+    name = "llvm"
+    calls = True
+    fuses = True
+
+    def __init__(self) -> None:
+        _initialised()
+        self.processor, self.features = _processor()
+        version = ".".join(map(str, llvm.llvm_version_info))
+        self.identity = (
+            f"llvm {version} {llvmlite.__version__} {llvm.get_process_triple()} {self.processor} {self.features}"
+        )
+
+    def _machine(self) -> llvm.TargetMachine:
+        target = llvm.Target.from_default_triple()
+        return target.create_target_machine(
+            cpu=self.processor, features=self.features, opt=OPTIMISATION, jit=True, reloc="pic", codemodel="jitdefault"
+        )
+
+    def layout(self, program: Program | Schedule) -> Layout:
+        """How blocks of this program lie in memory: as many states as keep its columns in the nearest cache."""
+        if isinstance(program, Schedule):
+            size, width = SECOND_LEVEL, program.columns
+        else:
+            size, width = FIRST_LEVEL, program.width_in + program.width_out
+        w = lanes(self.processor, self.features)
+        block = min(BLOCK, max(w, size // (8 * max(width, 1)) // w * w))
+        return Layout(w, block, block + w)
+
+    def assembly(self, program: Program | Schedule) -> llvm.ModuleRef:
+        """The program as LLVM's assembly."""
+        from rttrr_pin.compile.emit.llvm_driver import driver  # llvmlite's builder, not needed for what is on disk
+
+        layout = self.layout(program)
+        if isinstance(program, Schedule):
+            text, between = calls(program, layout), program.between
+        else:
+            text, between = body(program, layout)
+        module = llvm.parse_assembly(driver(program, layout, between))
+        options = llvm.create_pipeline_tuning_options(speed_level=OPTIMISATION)
+        options.loop_vectorization = options.slp_vectorization = options.loop_unrolling = False
+        builder = llvm.create_pass_builder(self._machine(), options)
+        builder.getModulePassManager().run(module, builder)
+        module.link_in(llvm.parse_assembly(text))  # straight lines: there is nothing to be found in them
+        module.verify()
+        return module
+
+    def emit(self, program: Program | Schedule) -> bytes:
+        """Object code."""
+        code: bytes = self._machine().emit_object(self.assembly(program))
+        return code
+
+    def load(self, code: bytes, inputs: Sequence[Field], outputs: Sequence[Field]) -> LlvmExecutable:
+        """Link object code into this process."""
+        engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), self._machine())
+        engine.add_object_file(llvm.ObjectFileRef.from_data(code))
+        engine.finalize_object()
+        return LlvmExecutable(engine)
+
+
+class LlvmExecutable:
+    """Machine code in memory; it lives as long as this object."""
+
+    def __init__(self, engine: llvm.ExecutionEngine) -> None:
+        self._engine = engine
+        kind = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64)
+        self._run = kind(engine.get_function_address("run"))
+        self.one = python_function(engine.get_function_address("one"), engine.get_function_address("set_context"))
+
+    def call(self, general: Callable[..., Any], owner: object) -> Callable[..., Any] | None:
+        """A callable for f(q, v, a, out=out) on one state or few; what it declines goes to the general one."""
+        address = self._engine.get_function_address
+        return python_call(address("call"), address("set_context"), general, owner)
+
+    def bind(self, inputs: Sequence[Array], outputs: Sequence[NDArray[np.float64]]) -> Task:
+        """Describe the arrays once, for any number of calls from any thread."""
+        arrays = (*inputs, *outputs)
+        records = np.array([_record(x) for x in arrays], dtype=np.int64)
+        address = records.ctypes.data
+
+        def task(start: int, stop: int, alive: object = (self, records, arrays)) -> bool:
+            code = self._run(address, start, stop)
+            if code < 0:
+                raise MemoryError("no memory for one block of states")
+            return bool(code)
+
+        return task
+
+
+def _record(x: Array) -> tuple[int, ...]:
+    """What compiled code must know of an array (N, width); see `llvm_driver`."""
+    return (x.__array_interface__["data"][0], *x.strides, x.shape[1], x.dtype.itemsize == 4)
+
+
+@cache
+def emitter() -> LlvmEmitter:
+    """The one of this process."""
+    return LlvmEmitter()

@@ -1,0 +1,103 @@
+"""A program as LLVM assembly: straight lines over vectors of states.
+
+The text has functions `void segment_k(ptr in, ptr out, ptr between, i64 m)`, each a loop over m states, `LANES` at a
+time, and `void body(...)`, which calls them in turn. Column j of an array of the block starts at j * pitch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from rttrr_pin.compile.emit.llvm_vectors import Layout, Lines, VectorCode, declarations, loop
+from rttrr_pin.compile.expression import Op
+from rttrr_pin.compile.program import Program
+
+SEGMENT = 700
+"""Operations in one loop: its code stays in the instruction cache, and the compiler's time linear."""
+
+COLUMNS = (("q", "in"), ("o", "out"), ("b", "between"))
+"""Addresses at the present states, and of what."""
+
+
+def body(program: Program, layout: Layout) -> tuple[str, int]:
+    """The program's functions, and how many columns they need to pass values from one to the next."""
+    parts = _segments(program)
+    passed = _passed(program, parts)
+    texts = [_segment(program, layout, k, part, passed) for k, part in enumerate(parts)]
+    arguments = "ptr %in, ptr %out, ptr %between, i64 %m"
+    calls = "\n".join(f"  call void @segment_{k}({arguments})" for k in range(len(parts)))
+    whole = f"define void @body({arguments}) noinline {{\n{calls}\n  ret void\n}}\n"
+    return "\n".join([*declarations(layout.lanes), *texts, whole, *_fill(program, layout)]), len(passed)
+
+
+def _fill(program: Program, layout: Layout) -> Iterator[str]:
+    """The function `void fill(ptr out, i64 m)`: what no state changes, written once for all blocks."""
+    graph = program.graph
+    still = [(place, x) for place, x in enumerate(program.results) if graph.op[x] is Op.CONSTANT]
+    parts = [still[start : start + SEGMENT] for start in range(0, len(still), SEGMENT)]
+    for k, part in enumerate(parts):
+        lines = Lines(layout.lanes)
+        for place, x in part:
+            value = lines.splat(graph.value[x])
+            lines.do(f"store {lines.vector} {value}, ptr {lines.at('%o', place * layout.pitch)}")
+        yield _loop(f"fill_{k}", lines, "loop")
+    calls = "\n".join(f"  call void @fill_{k}(ptr %out, ptr %out, ptr %out, i64 %m)" for k in range(len(parts)))
+    yield f"define void @fill(ptr %out, i64 %m) noinline {{\n{calls}\n  ret void\n}}\n"
+
+
+def _segments(program: Program) -> list[list[int]]:
+    """The operations in order, cut into loops of about equal length."""
+    op = program.graph.op
+    todo = [x for x in program.order if op[x] not in (Op.CONSTANT, Op.INPUT)]
+    count = max(1, -(-len(todo) // SEGMENT))
+    size = -(-len(todo) // count) or 1
+    parts = [todo[start : start + size] for start in range(0, len(todo), size)] or [[]]
+    return _angles_together(program, parts)
+
+
+def _angles_together(program: Program, parts: list[list[int]]) -> list[list[int]]:
+    """Sine and cosine of one angle are computed at once: both stand where the first of them stands."""
+    op, args = program.graph.op, program.graph.args
+    first: dict[int, int] = {}
+    moved: list[list[int]] = [[] for _ in parts]
+    for k, part in enumerate(parts):
+        for x in part:
+            home = first.setdefault(args[x][0], k) if op[x] in (Op.SIN, Op.COS) else k
+            moved[home].append(x)
+    return moved
+
+
+def _passed(program: Program, parts: list[list[int]]) -> dict[int, int]:
+    """Values that a later segment needs, and the column that each is passed in."""
+    home = {x: k for k, part in enumerate(parts) for x in part}
+    last = {x: home[x] for part in parts for x in part}
+    for k, part in enumerate(parts):
+        for x in part:
+            for y in program.graph.args[x]:
+                if y in home:
+                    last[y] = max(last[y], k)
+    needed = sorted(x for x in home if last[x] > home[x])
+    return {x: column for column, x in enumerate(needed)}
+
+
+def _segment(program: Program, layout: Layout, k: int, part: list[int], passed: dict[int, int]) -> str:
+    """One loop."""
+    lines = Lines(layout.lanes)
+    writer = VectorCode(program, layout, lines, passed)
+    for x in part:
+        writer.compute(x)
+        if x in passed:
+            lines.do(f"store {lines.vector} {writer.value[x]}, ptr {lines.at('%b', passed[x] * layout.pitch)}")
+    results = list(enumerate(program.results))
+    inside = set(part)
+    first = k == 0
+    for place, x in results:
+        if x in inside or (first and program.graph.op[x] is Op.INPUT):
+            lines.do(f"store {lines.vector} {writer.get(x)}, ptr {lines.at('%o', place * layout.pitch)}")
+    return _loop(f"segment_{k}", lines, writer.label)
+
+
+def _loop(name: str, lines: Lines, last: str) -> str:
+    """A function that does the lines for m states; %q, %o and %b are where these have their columns."""
+    lines.text[:0] = [f"  %{at} = getelementptr double, ptr %{base}, i64 %i" for at, base in COLUMNS]
+    return loop(name, "ptr noalias %in, ptr noalias %out, ptr noalias %between", lines, last)

@@ -1,0 +1,120 @@
+"""A schedule as LLVM assembly: one function for each step, a table of calls, and a loop that goes through it.
+
+    void step_k(ptr in, ptr row, ptr numbers, i64 m)     a loop over m states, LANES at a time
+    void body(ptr in, ptr out, ptr between, i64 m)       all calls
+
+A row of the table has the step, then the columns that it reads and those that it writes, as distances from `in` in
+float64: `out` and `between` lie behind `in`. The numbers of all calls stand one behind the other in another table.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from rttrr_pin.compile.call_program import Schedule, Step
+from rttrr_pin.compile.emit.llvm_vectors import Layout, Lines, VectorCode, declarations, loop
+from rttrr_pin.compile.expression import LEAVES
+
+END = 2**32 - 1
+"""In the place of a step, behind the last call."""
+
+
+FILL = "define void @fill(ptr %out, i64 %m) {\n  ret void\n}\n"
+"""What no state changes is written by calls, as all else is."""
+
+
+def calls(schedule: Schedule, layout: Layout) -> str:
+    """The schedule's functions and tables."""
+    steps = (_step(step, layout, k) for k, step in enumerate(schedule.steps))
+    return "\n".join([*declarations(layout.lanes), *_tables(schedule, layout), *steps, _body(schedule), FILL])
+
+
+def _tables(schedule: Schedule, layout: Layout) -> Iterator[str]:
+    """Rows and numbers as bytes, which take no time to read."""
+    rows = [x for call in schedule.calls for x in (call.step, *_offsets((*call.columns, *call.results), layout))]
+    numbers = [x for call in schedule.calls for x in call.numbers]
+    yield _constant("rows", struct.pack(f"<{len(rows) + 1}I", *rows, END))
+    yield _constant("numbers", struct.pack(f"<{len(numbers)}d", *numbers))
+
+
+def _offsets(columns: tuple[int, ...], layout: Layout) -> Iterator[int]:
+    return (column * layout.pitch for column in columns)
+
+
+def _constant(name: str, data: bytes) -> str:
+    text = "".join(f"\\{byte:02X}" for byte in data)
+    return f'@{name} = internal constant [{len(data)} x i8] c"{text}", align 64'
+
+
+@dataclass
+class _StepCode(VectorCode):
+    """Writes the operations of one step; its columns and numbers are found through the table.
+
+    Attributes:
+        step: the step.
+    """
+
+    step: Step | None = None
+
+    def read(self, place: int) -> str:
+        """The vector of a column, or a number in all lanes."""
+        assert self.step is not None
+        lines, v = self.lines, self.lines.vector
+        if place in self.step.columns:
+            return lines(f"load {v}, ptr {self.address(self.step.columns.index(place))}, align 8")
+        x = lines(f"load double, ptr {lines.at('%numbers', self.step.numbers.index(place))}")
+        first = lines(f"insertelement {v} poison, double {x}, i32 0")
+        return lines(f"shufflevector {v} {first}, {v} poison, <{lines.lanes} x i32> zeroinitializer")
+
+    def address(self, entry: int) -> str:
+        """Where the column of an entry of the row has the present states."""
+        lines = self.lines
+        offset = lines(f"load i32, ptr {lines(f'getelementptr i32, ptr %row, i64 {entry}')}")
+        return lines(f"getelementptr double, ptr %q, i64 {lines(f'zext i32 {offset} to i64')}")
+
+
+def _step(step: Step, layout: Layout, k: int) -> str:
+    """One loop over the states; everything is read before anything is written, since columns are used again."""
+    program, lines = step.program, Lines(layout.lanes)
+    code = _StepCode(program, layout, lines, step=step)
+    for x in program.order:
+        if program.graph.op[x] not in LEAVES:
+            code.compute(x)
+    values = [code.get(x) for x in program.results]
+    for entry, value in enumerate(values, len(step.columns)):
+        lines.do(f"store {lines.vector} {value}, ptr {code.address(entry)}, align 8")
+    lines.text.insert(0, "  %q = getelementptr double, ptr %in, i64 %i")
+    return loop(f"step_{k}", "ptr %in, ptr %row, ptr %numbers", lines, code.label)
+
+
+def _body(schedule: Schedule) -> str:
+    """The loop over the rows of the table."""
+    kinds = range(len(schedule.steps))
+    cases = " ".join(f"i32 {k}, label %case_{k}" for k in kinds)
+    parts = []
+    for k, step in enumerate(schedule.steps):
+        entries = 1 + len(step.columns) + len(step.program.results)
+        parts.append(f"""case_{k}:
+  %columns_{k} = getelementptr i32, ptr %row, i64 1
+  call void @step_{k}(ptr %in, ptr %columns_{k}, ptr %number, i64 %m)
+  %row_{k} = getelementptr i32, ptr %row, i64 {entries}
+  %number_{k} = getelementptr double, ptr %number, i64 {len(step.numbers)}
+  br label %loop""")
+    rows = ", ".join(["[ @rows, %start ]", *(f"[ %row_{k}, %case_{k} ]" for k in kinds)])
+    numbers = ", ".join(["[ @numbers, %start ]", *(f"[ %number_{k}, %case_{k} ]" for k in kinds)])
+    text = "\n".join(parts)
+    return f"""define void @body(ptr %in, ptr %out, ptr %between, i64 %m) noinline {{
+start:
+  br label %loop
+loop:
+  %row = phi ptr {rows}
+  %number = phi ptr {numbers}
+  %step = load i32, ptr %row
+  switch i32 %step, label %done [ {cases} ]
+{text}
+done:
+  ret void
+}}
+"""

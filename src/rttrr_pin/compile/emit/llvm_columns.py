@@ -1,0 +1,219 @@
+"""Compiled code that moves states between arrays of any layout and the columns that a program works on."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from llvmlite import ir
+
+from rttrr_pin.compile.emit.llvm_vectors import Layout
+
+I64, F64, F32, PTR, I1 = ir.IntType(64), ir.DoubleType(), ir.FloatType(), ir.PointerType(), ir.IntType(1)
+I32 = ir.IntType(32)
+
+LINE = 64
+"""Bytes in a line of the cache."""
+
+
+def number(x: int) -> ir.Constant:
+    """An int64."""
+    return ir.Constant(I64, x)
+
+
+def untyped(address: ir.NamedValue) -> ir.NamedValue:
+    """The address as LLVM sees it, of nothing in particular."""
+    address.type = PTR
+    return address
+
+
+@dataclass
+class Writer:
+    """Writes one function."""
+
+    builder: ir.IRBuilder
+
+    def offset(self, base: ir.Value, bytes_: ir.Value | int) -> ir.Value:
+        """The address so many bytes further."""
+        by = number(bytes_) if isinstance(bytes_, int) else bytes_
+        return self.builder.gep(base, [by], source_etype=ir.IntType(8))
+
+    def load(self, kind: ir.Type, address: ir.Value, align: int | None = None) -> ir.Value:
+        """What stands at an address."""
+        return self.builder.load(address, typ=kind, align=align)
+
+    def store(self, value: ir.Value, address: ir.Value, align: int | None = None) -> None:
+        """Write to an address."""
+        self.builder.store(value, address, align=align)
+
+    @contextmanager
+    def loop(self, stop: ir.Value, step: int = 1, start: ir.Value | None = None) -> Iterator[ir.Value]:
+        """From start (0) to stop by step."""
+        b = self.builder
+        first, body_, after = (b.append_basic_block(name) for name in ("head", "body", "after"))
+        before = b.block
+        b.branch(first)
+        b.position_at_end(first)
+        i = b.phi(I64)
+        i.add_incoming(start or number(0), before)
+        b.cbranch(b.icmp_signed("<", i, stop), body_, after)
+        b.position_at_end(body_)
+        yield i
+        i.add_incoming(b.add(i, number(step)), b.block)
+        b.branch(first)
+        b.position_at_end(after)
+
+    def memory(self, kind: ir.Type, count: int = 1) -> ir.Value:
+        """Memory of this function's own, on a cache line."""
+        memory = self.builder.alloca(kind, count)
+        memory.align = LINE
+        return untyped(memory)
+
+    def aligned(self, address: ir.Value) -> ir.Value:
+        """The next address on a cache line."""
+        b = self.builder
+        return b.inttoptr(b.and_(b.add(b.ptrtoint(address, I64), number(LINE - 1)), number(-LINE)), PTR)
+
+    def require(self, condition: ir.Value, otherwise: ir.Block) -> None:
+        """Go on where the condition holds."""
+        on = self.builder.append_basic_block("on")
+        self.builder.cbranch(condition, on, otherwise)
+        self.builder.position_at_end(on)
+
+    def least(self, x: ir.Value, y: ir.Value) -> ir.Value:
+        """The smaller of two."""
+        return self.builder.select(self.builder.icmp_signed("<", x, y), x, y)
+
+
+def function(
+    module: ir.Module, name: str, result: ir.Type, arguments: Sequence[ir.Type], internal: bool = True
+) -> tuple[ir.Function, Writer]:
+    """A new function and what writes it; an internal one keeps its code to itself, and is not copied into others."""
+    function = ir.Function(module, ir.FunctionType(result, arguments), name)
+    if internal:
+        function.linkage = "internal"
+        function.attributes.add("noinline")
+    return function, Writer(ir.IRBuilder(function.append_basic_block("start")))
+
+
+def pack(module: ir.Module, layout: Layout, kind: ir.Type) -> ir.Function:
+    """Gather m states of an array into columns; lanes beyond m repeat the last state."""
+    name = "pack_f64" if kind is F64 else "pack_f32"
+    made, w = function(module, name, ir.VoidType(), [PTR, I64, I64, I64, PTR, I64])
+    source, row, column, count, target, m = made.args
+    b, W, pitch = w.builder, layout.lanes, number(layout.pitch * 8)
+    if kind is F64:
+        _copy_columns(w, layout, (source, column), (target, pitch), (row, count, m))
+    last = b.sub(m, number(1))
+    with w.loop(m, W) as i:
+        rows = [w.offset(source, b.mul(w.least(b.add(i, number(k)), last), row)) for k in range(W)]
+        to = w.offset(target, b.shl(i, number(3)))
+        squares = _squares(b, layout, column, count) if kind is F64 else number(0)
+        with w.loop(squares, W) as j:
+            at = b.shl(j, number(3))
+            for k, x in enumerate(_transposed(b, [w.load(_vector(layout), w.offset(x, at), 8) for x in rows])):
+                w.store(x, w.offset(to, b.mul(b.add(j, number(k)), pitch)), 8)
+        with w.loop(count, 1, squares) as j:
+            at = b.mul(j, column)
+            value: ir.Value = ir.Constant(_vector(layout), ir.Undefined)
+            for k, x in enumerate(rows):
+                item = w.load(kind, w.offset(x, at), 1)
+                value = b.insert_element(value, item if kind is F64 else b.fpext(item, F64), ir.Constant(I32, k))
+            w.store(value, w.offset(to, b.mul(j, pitch)), 8)
+    b.ret_void()
+    return made
+
+
+def unpack(module: ir.Module, layout: Layout) -> ir.Function:
+    """Scatter m states from columns into an array."""
+    made, w = function(module, "unpack_f64", ir.VoidType(), [PTR, I64, I64, I64, PTR, I64])
+    target, row, column, count, source, m = made.args
+    b, W, pitch = w.builder, layout.lanes, number(layout.pitch * 8)
+    _copy_columns(w, layout, (source, pitch), (target, column), (row, count, m))
+    full = b.and_(m, number(-W))
+    squares = _squares(b, layout, column, count)
+    with w.loop(full, W) as i:
+        rows = [w.offset(target, b.mul(b.add(i, number(k)), row)) for k in range(W)]
+        origin = w.offset(source, b.shl(i, number(3)))
+        with w.loop(squares, W) as j:
+            columns = [w.offset(origin, b.mul(b.add(j, number(k)), pitch)) for k in range(W)]
+            at = b.shl(j, number(3))
+            for y, x in zip(rows, _transposed(b, [w.load(_vector(layout), x, 8) for x in columns]), strict=True):
+                w.store(x, w.offset(y, at), 8)
+        with w.loop(count, 1, squares) as j:
+            at = b.mul(j, column)
+            value = w.load(_vector(layout), w.offset(origin, b.mul(j, pitch)), 8)
+            for k, y in enumerate(rows):
+                w.store(b.extract_element(value, ir.Constant(I32, k)), w.offset(y, at), 1)
+    with w.loop(m, 1, full) as i:
+        to, origin = w.offset(target, b.mul(i, row)), w.offset(source, b.shl(i, number(3)))
+        with w.loop(count) as j:
+            w.store(w.load(F64, w.offset(origin, b.mul(j, pitch))), w.offset(to, b.mul(j, column)), 1)
+    b.ret_void()
+    return made
+
+
+def _vector(layout: Layout) -> ir.Type:
+    """As many float64 as the processor computes at once."""
+    return ir.VectorType(F64, layout.lanes)
+
+
+def _copy_columns(
+    w: Writer,
+    layout: Layout,
+    source: tuple[ir.Value, ir.Value],
+    target: tuple[ir.Value, ir.Value],
+    sizes: tuple[ir.Value, ir.Value, ir.Value],
+) -> None:
+    """Where the array itself lies in columns, and m fills vectors: copy them, and return from the function."""
+    b, (row, count, m) = w.builder, sizes
+    fills = b.icmp_signed("==", b.and_(m, number(layout.lanes - 1)), number(0))
+    with b.if_then(b.and_(b.icmp_signed("==", row, number(8)), fills)):
+        with w.loop(count) as j:
+            x, y = (w.offset(base, b.mul(j, distance)) for base, distance in (source, target))
+            with w.loop(m, layout.lanes) as i:
+                at = b.shl(i, number(3))
+                w.store(w.load(_vector(layout), w.offset(x, at), 8), w.offset(y, at), 8)
+        b.ret_void()
+
+
+def _squares(b: ir.IRBuilder, layout: Layout, column: ir.Value, count: ir.Value) -> ir.Value:
+    """Columns that are moved in squares of LANES by LANES: those that lie side by side in memory."""
+    return b.select(b.icmp_signed("==", column, number(8)), b.and_(count, number(-layout.lanes)), number(0))
+
+
+def _transposed(b: ir.IRBuilder, rows: list[ir.Value]) -> list[ir.Value]:
+    """The columns of a square whose rows are vectors: halves exchanged, then quarters, and so on."""
+    W = len(rows)
+    step = W // 2
+    while step:
+        for i in (i for i in range(W) if not i & step):
+            x, y = rows[i], rows[i + step]
+            low = [k if not k & step else W + k - step for k in range(W)]
+            high = [k + step if not k & step else W + k for k in range(W)]
+            rows[i], rows[i + step] = (
+                b.shuffle_vector(x, y, ir.Constant(ir.VectorType(I32, W), mask)) for mask in (low, high)
+            )
+        step //= 2
+    return rows
+
+
+def unsound(module: ir.Module, layout: Layout) -> ir.Function:
+    """Whether m states have a number that is not finite: 0 x is 0 but for those, where it is NaN."""
+    made, w = function(module, "unsound", I1, [PTR, I64, I64])
+    source, count, m = made.args
+    b, W = w.builder, layout.lanes
+    zero = ir.Constant(_vector(layout), [0.0] * W)
+    integers = ir.VectorType(I64, W)
+    found = w.memory(integers)
+    w.store(ir.Constant(integers, [0] * W), found)
+    with w.loop(count) as j:
+        column = w.offset(source, b.mul(j, number(layout.pitch * 8)))
+        with w.loop(m, W) as i:
+            product = b.fmul(w.load(_vector(layout), w.offset(column, b.shl(i, number(3))), 8), zero)
+            bad = b.sext(b.fcmp_unordered("uno", product, zero), integers)
+            w.store(b.or_(w.load(integers, found), bad), found)
+    none = b.icmp_signed("==", w.load(integers, found), ir.Constant(integers, [0] * W))
+    b.ret(b.icmp_unsigned("!=", b.bitcast(none, ir.IntType(W)), ir.Constant(ir.IntType(W), -1)))
+    return made

@@ -1,0 +1,282 @@
+"""Operations on vectors of states as LLVM assembly: what straight lines and the steps of a schedule are written in.
+
+No operation is reordered or fused with another, and NaN and infinities are respected: what is written is what is done.
+"""
+
+from __future__ import annotations
+
+import struct
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+from rttrr_pin.compile.expression import FUSED, Op
+from rttrr_pin.compile.program import Program
+from rttrr_pin.compile.sincos import COSINE, LARGEST, PIO2, ROUND, SINE, TWO_OVER_PI
+
+BINARY = {Op.ADD: "fadd", Op.SUB: "fsub", Op.MUL: "fmul"}
+
+
+def literal(x: float) -> str:
+    """A float64 as LLVM writes it: its bits."""
+    return f"0x{struct.unpack('<Q', struct.pack('<d', x))[0]:016X}"
+
+
+@dataclass
+class Lines:
+    """Lines of one function, with fresh names, for vectors of so many lanes."""
+
+    lanes: int
+    text: list[str] = field(default_factory=list)
+    count: int = 0
+
+    @property
+    def vector(self) -> str:
+        """The type of a vector of float64."""
+        return f"<{self.lanes} x double>"
+
+    @property
+    def integers(self) -> str:
+        """The type of a vector of int64."""
+        return f"<{self.lanes} x i64>"
+
+    def splat(self, x: float) -> str:
+        """A constant in every lane."""
+        return f"<{', '.join([f'double {literal(x)}'] * self.lanes)}>"
+
+    def whole(self, x: int) -> str:
+        """An integer in every lane."""
+        return f"<{', '.join([f'i64 {x}'] * self.lanes)}>"
+
+    def __call__(self, line: str) -> str:
+        """One instruction; returns the name of its result."""
+        self.count += 1
+        name = f"%t{self.count}"
+        self.text.append(f"  {name} = {line}")
+        return name
+
+    def do(self, line: str) -> None:
+        """One instruction without a result."""
+        self.text.append(f"  {line}")
+
+    def op(self, what: str, x: str, y: str) -> str:
+        """A binary operation on vectors of float64, exactly as written."""
+        return self(f"{what} {self.vector} {x}, {y}")
+
+    def fma(self, x: str, y: str, z: str) -> str:
+        """The sum x y + z, rounded once."""
+        v = self.vector
+        return self(f"call {v} @llvm.fma.v{self.lanes}f64({v} {x}, {v} {y}, {v} {z})")
+
+    def negated(self, x: str) -> str:
+        """The opposite."""
+        return self(f"fneg {self.vector} {x}")
+
+    def bits(self, what: str, x: str, y: str) -> str:
+        """A binary operation on vectors of int64."""
+        return self(f"{what} {self.integers} {x}, {y}")
+
+    def as_bits(self, x: str) -> str:
+        """The bits of a vector of float64."""
+        return self(f"bitcast {self.vector} {x} to {self.integers}")
+
+    def as_floats(self, x: str) -> str:
+        """The float64 that have these bits."""
+        return self(f"bitcast {self.integers} {x} to {self.vector}")
+
+    def at(self, base: str, offset: int) -> str:
+        """The address of column offset, at the present states."""
+        return self(f"getelementptr double, ptr {base}, i64 {offset}")
+
+
+@dataclass(frozen=True, slots=True)
+class Layout:
+    """How a block of states lies in memory, and on which machine.
+
+    Attributes:
+        lanes: states computed at once.
+        block: states in a block.
+        pitch: the distance of two columns, in float64.
+    """
+
+    lanes: int
+    block: int
+    pitch: int
+
+
+def declarations(lanes: int) -> Iterator[str]:
+    """Of the functions that operations on vectors call."""
+    v = f"<{lanes} x double>"
+    yield f"declare {v} @llvm.fma.v{lanes}f64({v}, {v}, {v})"
+    yield f"declare {v} @llvm.fabs.v{lanes}f64({v})"
+    yield "declare double @sin(double)"
+    yield "declare double @cos(double)"
+
+
+def loop(name: str, arguments: str, lines: Lines, last: str) -> str:
+    """A function that does lines for m states, LANES at a time.
+
+    Args:
+        name: of the function.
+        arguments: all but the last, m.
+        lines: what is done for the states from %i on.
+        last: the label of their last basic block.
+    """
+    text = "\n".join(lines.text)
+    return f"""define internal void @{name}({arguments}, i64 %m) noinline {{
+start:
+  br label %loop
+loop:
+  %i = phi i64 [ 0, %start ], [ %next, %{last} ]
+{text}
+  %next = add i64 %i, {lines.lanes}
+  %more = icmp ult i64 %next, %m
+  br i1 %more, label %loop, label %done
+done:
+  ret void
+}}
+"""
+
+
+@dataclass
+class VectorCode:
+    """Writes operations on vectors.
+
+    Attributes:
+        program: whose operations they are.
+        layout: how the block lies in memory.
+        lines: of the function that is written.
+        passed: columns of values that other parts of the program compute.
+        value: the vector of each node so far.
+        angles: sine and cosine of each angle so far.
+        label: of the present basic block.
+    """
+
+    program: Program
+    layout: Layout
+    lines: Lines
+    passed: dict[int, int] = field(default_factory=dict)
+    value: dict[int, str] = field(default_factory=dict)
+    angles: dict[int, tuple[str, str]] = field(default_factory=dict)
+    label: str = "loop"
+
+    def get(self, x: int) -> str:
+        """The vector of a node; read from memory where this segment does not compute it."""
+        known = self.value.get(x)
+        if known is not None:
+            return known
+        graph = self.program.graph
+        if graph.op[x] is Op.CONSTANT:
+            return self.lines.splat(graph.value[x])
+        self.value[x] = self.read(graph.args[x][0]) if graph.op[x] is Op.INPUT else self.column("%b", self.passed[x])
+        return self.value[x]
+
+    def read(self, place: int) -> str:
+        """The vector of an input."""
+        return self.column("%q", place)
+
+    def column(self, base: str, column: int) -> str:
+        """The vector at the present states of a column."""
+        lines = self.lines
+        return lines(f"load {lines.vector}, ptr {lines.at(base, column * self.layout.pitch)}")
+
+    def compute(self, x: int) -> None:
+        """The operation of a node."""
+        graph, lines = self.program.graph, self.lines
+        op, args = graph.op[x], graph.args[x]
+        if op in BINARY:
+            name = lines.op(BINARY[op], self.get(args[0]), self.get(args[1]))
+        elif op in FUSED:
+            left, right, term = (self.get(y) for y in args)
+            left = lines.negated(left) if op is Op.FNMA else left
+            name = lines.fma(left, right, lines.negated(term) if op is Op.FMS else term)
+        elif op is Op.NEG:
+            name = lines.negated(self.get(args[0]))
+        elif op is Op.SIGN:
+            name = self._sign(self.get(args[0]))
+        elif op is Op.ABS:
+            name = lines(f"call {lines.vector} @llvm.fabs.v{lines.lanes}f64({lines.vector} {self.get(args[0])})")
+        else:
+            if args[0] not in self.angles:
+                self.angles[args[0]] = self._sincos(self.get(args[0]))
+            name = self.angles[args[0]][0 if op is Op.SIN else 1]
+        self.value[x] = name
+
+    def _sign(self, x: str) -> str:
+        """-1, 0 or 1; NaN of what is not finite, which must not go unseen."""
+        lines = self.lines
+        v, mask = lines.vector, f"<{lines.lanes} x i1>"
+        above = lines(f"fcmp ogt {v} {x}, {lines.splat(0.0)}")
+        below = lines(f"fcmp olt {v} {x}, {lines.splat(0.0)}")
+        negative = lines(f"select {mask} {below}, {v} {lines.splat(-1.0)}, {v} {lines.splat(0.0)}")
+        sign = lines(f"select {mask} {above}, {v} {lines.splat(1.0)}, {v} {negative}")
+        return lines.op("fadd", sign, lines.op("fmul", x, lines.splat(0.0)))
+
+    def _sincos(self, q: str) -> tuple[str, str]:
+        """Sine and cosine, by the polynomials; angles beyond their range are done over by the C library."""
+        lines = self.lines
+        s, c = polynomials(lines, q)
+        size = lines(f"call {lines.vector} @llvm.fabs.v{lines.lanes}f64({lines.vector} {q})")
+        beyond = lines(f"fcmp ugt {lines.vector} {size}, {lines.splat(LARGEST)}")  # also NaN
+        some = lines(f"bitcast <{lines.lanes} x i1> {beyond} to i{lines.lanes}")
+        any_ = lines(f"icmp ne i{lines.lanes} {some}, 0")
+        n, before = lines.count, self.label
+        lines.do(f"br i1 {any_}, label %far{n}, label %near{n}")
+        lines.text.append(f"far{n}:")
+        exact = [self._library(q, beyond, old, name) for name, old in (("sin", s), ("cos", c))]
+        lines.do(f"br label %near{n}")
+        lines.text.append(f"near{n}:")
+        self.label = f"near{n}"
+        v = lines.vector
+        merged = [
+            lines(f"phi {v} [ {old}, %{before} ], [ {new}, %far{n} ]") for old, new in zip((s, c), exact, strict=True)
+        ]
+        return merged[0], merged[1]
+
+    def _library(self, q: str, beyond: str, old: str, name: str) -> str:
+        """The C library's function in the lanes that lie beyond."""
+        lines, v = self.lines, self.lines.vector
+        new = old
+        for lane in range(lines.lanes):
+            x = lines(f"extractelement {v} {q}, i32 {lane}")
+            y = lines(f"call double @{name}(double {x})")
+            new = lines(f"insertelement {v} {new}, double {y}, i32 {lane}")
+        return lines(f"select <{lines.lanes} x i1> {beyond}, {v} {new}, {v} {old}")
+
+
+def polynomials(lines: Lines, q: str) -> tuple[str, str]:
+    """Sine and cosine for |q| up to LARGEST; see `rttrr_pin.compile.sincos`."""
+    splat, fma, op, bits = lines.splat, lines.fma, lines.op, lines.bits
+    shifted = fma(q, splat(TWO_OVER_PI), splat(ROUND))
+    k = op("fsub", splat(ROUND), shifted)  # minus the multiple of pi/2
+    t = fma(k, splat(PIO2[0]), q)
+    second = op("fmul", k, splat(PIO2[1]))
+    r = op("fadd", t, second)
+    lost = op("fsub", second, op("fsub", r, t))
+    rest = fma(k, splat(PIO2[2]), fma(k, splat(PIO2[1]), lines.negated(second)))
+    low = op("fadd", lost, rest)
+    z = op("fmul", r, r)
+    sine, cosine = (_horner(lines, z, terms) for terms in (SINE, COSINE))
+    s = op("fadd", r, fma(op("fmul", r, z), sine, low))
+    half = op("fmul", z, splat(0.5))
+    w = op("fsub", splat(1.0), half)
+    over = op("fsub", op("fsub", splat(1.0), w), half)
+    tail = fma(op("fmul", z, z), cosine, over)
+    c = op("fadd", w, fma(lines.negated(r), low, tail))
+    quadrant = lines.as_bits(shifted)
+    odd = lines(f"icmp slt {lines.integers} {bits('shl', quadrant, lines.whole(63))}, {lines.whole(0)}")
+    mask, v = f"<{lines.lanes} x i1>", lines.vector
+    flips = [
+        bits("shl", bits("lshr", n, lines.whole(1)), lines.whole(63))
+        for n in (quadrant, bits("add", quadrant, lines.whole(1)))
+    ]
+    pair = (f"{v} {c}, {v} {s}", f"{v} {s}, {v} {c}")
+    chosen = [lines(f"select {mask} {odd}, {both}") for both in pair]
+    s, c = (lines.as_floats(bits("xor", lines.as_bits(x), flip)) for x, flip in zip(chosen, flips, strict=True))
+    return s, c
+
+
+def _horner(lines: Lines, z: str, terms: tuple[float, ...]) -> str:
+    value = lines.splat(terms[-1])
+    for term in reversed(terms[:-1]):
+        value = lines.fma(value, z, lines.splat(term))
+    return value

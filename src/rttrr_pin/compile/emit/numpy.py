@@ -1,0 +1,126 @@
+"""Plain NumPy, for where nothing can be compiled: the program as Python source, on blocks that stay in the cache."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.compile.call_program import Schedule
+from rttrr_pin.compile.emit import Array, Task
+from rttrr_pin.compile.expression import LEAVES, Op
+from rttrr_pin.compile.program import Field, Program
+
+BLOCK = 512
+"""States computed at a time."""
+
+FORM = {
+    Op.ADD: "{} + {}",
+    Op.SUB: "{} - {}",
+    Op.MUL: "{} * {}",
+    Op.NEG: "-{}",
+    Op.SIN: "sin({})",
+    Op.COS: "cos({})",
+    Op.SIGN: "sign({})",
+    Op.ABS: "abs({})",
+}
+"""Each operation in Python."""
+
+Columns = list[NDArray[np.float64]]
+
+
+class NumpyEmitter:
+    """Writes Python."""
+
+    name = "numpy"
+    identity = "numpy"
+    calls = True
+    fuses = False
+
+    def emit(self, program: Program | Schedule) -> bytes:
+        """Python source of a function from columns of inputs to columns of outputs."""
+        lines = _of_calls(program) if isinstance(program, Schedule) else _straight("program", program)
+        return "\n".join(lines).encode()
+
+    def load(self, code: bytes, inputs: Sequence[Field], outputs: Sequence[Field]) -> NumpyExecutable:
+        """Make the function."""
+        space: dict[str, Any] = {"sin": np.sin, "cos": np.cos, "sign": np.sign, "inf": np.inf, "nan": np.nan}
+        exec(compile(code, "<program>", "exec"), space)
+        return NumpyExecutable(space["program"])
+
+
+def _straight(function: str, program: Program) -> Iterator[str]:
+    """A function of a program's operations."""
+    op, args, value = program.graph.op, program.graph.args, program.graph.value
+
+    def name(x: int) -> str:
+        if op[x] is Op.CONSTANT:
+            return repr(value[x])
+        return f"x[{args[x][0]}]" if op[x] is Op.INPUT else f"t{x}"
+
+    computed = [x for x in program.order if op[x] not in LEAVES]
+    last = {y: x for x in computed for y in args[x]}
+    ends: dict[int, list[int]] = {}
+    for y, x in last.items():
+        if op[y] not in LEAVES and y not in program.results:
+            ends.setdefault(x, []).append(y)
+    yield f"def {function}(x):"
+    for x in computed:
+        yield f"    t{x} = {FORM[op[x]].format(*(name(y) for y in args[x]))}"
+        if x in ends:
+            yield f"    del {', '.join(f't{y}' for y in ends[x])}"  # its memory serves the next
+    yield f"    return [{', '.join(name(x) for x in program.results)}]"
+
+
+def _of_calls(schedule: Schedule) -> Iterator[str]:
+    """A function for each step, the calls as data, and a function that goes through them."""
+    for k, step in enumerate(schedule.steps):
+        yield from _straight(f"step_{k}", step.program)
+    places = [(step.columns, step.numbers) for step in schedule.steps]
+    first, last = schedule.width_in, schedule.width_in + schedule.width_out
+    yield f"steps = [{', '.join(f'step_{k}' for k in range(len(places)))}]"
+    yield f"places = {places!r}"
+    yield f"calls = {[(call.step, call.columns, call.numbers, call.results) for call in schedule.calls]!r}"
+    yield "def program(x):"
+    yield f"    memory = x + [None] * {schedule.columns - first}"
+    yield "    for k, columns, numbers, results in calls:"
+    yield "        given = dict(zip(places[k][1], numbers))"
+    yield "        given.update((place, memory[column]) for place, column in zip(places[k][0], columns))"
+    yield "        for column, result in zip(results, steps[k](given)):"
+    yield "            memory[column] = result"
+    yield f"    return memory[{first}:{last}]"
+
+
+class NumpyExecutable:
+    """A Python function over columns."""
+
+    one = None
+
+    def __init__(self, program: Callable[[Columns], Columns]) -> None:
+        self._program = program
+
+    def bind(self, inputs: Sequence[Array], outputs: Sequence[NDArray[np.float64]]) -> Task:
+        """Blocks of the arrays, one after the other."""
+
+        def task(start: int, stop: int) -> bool:
+            unsound = False
+            for first in range(start, stop, BLOCK):
+                part = slice(first, min(first + BLOCK, stop))
+                columns = [np.array(column, dtype=np.float64) for x in inputs for column in x[part].T]
+                with np.errstate(over="ignore", invalid="ignore"):
+                    results = iter(self._program(columns))
+                    unsound |= not all(np.isfinite(column).all() for column in columns)
+                for out in outputs:
+                    for column in out[part].T:
+                        column[:] = next(results)
+                    unsound |= not np.isfinite(out[part]).all()
+            return bool(unsound)
+
+        return task
+
+
+def emitter() -> NumpyEmitter:
+    """The one there is."""
+    return NumpyEmitter()

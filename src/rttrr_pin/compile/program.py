@@ -1,0 +1,160 @@
+"""The straight-line program of one robot: inputs, operations in order, outputs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.compile.expression import LEAVES, Graph, Op
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Field:
+    """An array that goes in or comes out: so many numbers for each state.
+
+    Attributes:
+        name: such as "q" or "tau".
+        shape: of what belongs to one state, such as (6, 3).
+    """
+
+    name: str
+    shape: tuple[int, ...]
+
+    @property
+    def width(self) -> int:
+        """The count of numbers for each state."""
+        return math.prod(self.shape)
+
+
+@dataclass(frozen=True, slots=True)
+class Operations:
+    """What one state costs.
+
+    Attributes:
+        multiplications, additions, negations: counted one by one (a fused multiply-add counts as two).
+        sincos: angles of which sine or cosine are needed.
+    """
+
+    multiplications: int
+    additions: int
+    negations: int
+    sincos: int
+
+    @property
+    def total(self) -> int:
+        """All but the sines and cosines; published counts are of this kind."""
+        return self.multiplications + self.additions + self.negations
+
+    def __str__(self) -> str:
+        return (
+            f"{self.multiplications} multiplications, {self.additions} additions, {self.negations} sign changes, "
+            f"{self.sincos} angles"
+        )
+
+
+class Widths:
+    """What has input and output arrays."""
+
+    inputs: tuple[Field, ...]
+    outputs: tuple[Field, ...]
+
+    @property
+    def width_in(self) -> int:
+        """The count of numbers that one state brings."""
+        return sum(field.width for field in self.inputs)
+
+    @property
+    def width_out(self) -> int:
+        """The count of numbers that one state yields."""
+        return sum(field.width for field in self.outputs)
+
+
+@dataclass(frozen=True, eq=False)
+class Program(Widths):
+    """A robot's program.
+
+    Attributes:
+        graph: the operations.
+        inputs: the arrays it reads; the graph's inputs are their numbers, one array after the other.
+        outputs: the arrays it writes.
+        results: for each number of the outputs, one array after the other, the node that computes it.
+        placed_first: whether all placements stand first (see `order`), or the nodes by their numbers.
+    """
+
+    graph: Graph
+    inputs: tuple[Field, ...]
+    outputs: tuple[Field, ...]
+    results: tuple[int, ...]
+    placed_first: bool = True
+
+    @cached_property
+    def order(self) -> tuple[int, ...]:
+        """The nodes that are needed, each behind what it takes.
+
+        What depends on no finished vector, that is where the links are placed, comes first: compiled so, Panda and
+        Talos need fewer instructions than link by link, as the specification has it.
+        """
+        nodes = self.graph.reachable(self.results)
+        if not self.placed_first:
+            return tuple(nodes)
+        behind: set[int] = set()
+        for x in nodes:
+            args = self.graph.args[x] if self.graph.op[x] not in LEAVES else ()
+            if x in self.graph.kept or any(y in behind for y in args):
+                behind.add(x)
+        return tuple(sorted(nodes, key=lambda x: (x in behind, x)))
+
+    @cached_property
+    def unread(self) -> tuple[int, ...]:
+        """Places of inputs that no output depends on; what is not finite there would go unseen."""
+        read = set(inputs_of(self.graph, self.results))
+        return tuple(place for place in range(self.width_in) if place not in read)
+
+    @cached_property
+    def operations(self) -> Operations:
+        """What one state costs."""
+        op, args = self.graph.op, self.graph.args
+        ops = [op[x] for x in self.order]
+        angles = {args[x][0] for x in self.order if op[x] in (Op.SIN, Op.COS)}
+        return Operations(ops.count(Op.MUL), ops.count(Op.ADD) + ops.count(Op.SUB), ops.count(Op.NEG), len(angles))
+
+    def evaluate(self, columns: Sequence[Array] | Mapping[int, Array | float]) -> list[Array | float]:
+        """The outputs for columns of inputs, by NumPy: slow, and the reference for what compiles the program."""
+        values: dict[int, Array | float] = {}
+        for x in self.order:
+            op, args = self.graph.op[x], self.graph.args[x]
+            if op is Op.CONSTANT:
+                values[x] = self.graph.value[x]
+            elif op is Op.INPUT:
+                values[x] = columns[args[0]]
+            else:
+                values[x] = NUMERIC[op](*(values[y] for y in args))
+        return [values[x] for x in self.results]
+
+
+def inputs_of(graph: Graph, nodes: Iterable[int]) -> tuple[int, ...]:
+    """Places of the inputs that nodes depend on."""
+    return tuple(sorted(graph.args[x][0] for x in graph.reachable(nodes) if graph.op[x] is Op.INPUT))
+
+
+NUMERIC: dict[Op, Callable[..., Array]] = {
+    Op.ADD: np.add,
+    Op.SUB: np.subtract,
+    Op.MUL: np.multiply,
+    Op.NEG: np.negative,
+    Op.SIN: np.sin,
+    Op.COS: np.cos,
+    Op.SIGN: np.sign,
+    Op.ABS: np.abs,
+    Op.FMA: lambda x, y, z: x * y + z,
+    Op.FMS: lambda x, y, z: x * y - z,
+    Op.FNMA: lambda x, y, z: z - x * y,
+}
+"""Each operation on numbers; NumPy has no fused ones, so these round twice."""

@@ -1,0 +1,179 @@
+"""What a program can compute: the five quantities of the recursion, and what else follows from the same recursion.
+
+Each is a line in the table `QUANTITIES`: what it needs, its shape, and how its scalars come from the specification.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from rttrr_pin.core.algebra import Matrix, Scalar, Vector
+from rttrr_pin.core.dual import Dual, part_of
+from rttrr_pin.core.dynamics import Result, bodies, dynamics
+from rttrr_pin.core.joint import Joint
+from rttrr_pin.core.joint_motion import Body
+from rttrr_pin.core.model import Model
+from rttrr_pin.core.newton_euler import Payload
+from rttrr_pin.core.scalars import Arithmetic
+from rttrr_pin.core.tangent import over_duals, tangent
+
+INERTIAL_PARAMETERS = ("m", "mx", "my", "mz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz")
+"""Of one link, the tensor about the origin of {i}: the order of Pinocchio's `Inertia.toDynamicParameters`."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """A robot in motion, in scalars of one kind; what a quantity does not need is empty.
+
+    Attributes:
+        model: the robot.
+        arithmetic: the kind of scalar.
+        q, v, a: coordinates, rates, accelerations.
+        payloads: what the robot exerts on its surroundings.
+        links: to take instead of the model's own; None for those.
+    """
+
+    model: Model
+    arithmetic: Arithmetic
+    q: Sequence[Scalar]
+    v: Sequence[Scalar] = ()
+    a: Sequence[Scalar] = ()
+    payloads: Sequence[Payload] = ()
+    links: Sequence[Body] | None = None
+
+    @cached_property
+    def result(self) -> Result:
+        """The five quantities."""
+        return dynamics(self.model, self.arithmetic, self.q, self.v, self.a, self.payloads, self.links)
+
+
+@dataclass(frozen=True, slots=True)
+class Quantity:
+    """What can be asked of a kernel.
+
+    Attributes:
+        inputs: which of q, v, a it depends on.
+        shape: of what belongs to one state.
+        scalars: its numbers, the last axis fastest.
+        payload: whether a payload enters.
+        of_links: whether single links matter, so that no mass may be moved from one to another.
+        by_steps: whether it comes from scalars of one kind, so that the recursion's steps can be compiled once each.
+    """
+
+    inputs: str
+    shape: Callable[[Model], tuple[int, ...]]
+    scalars: Callable[[Motion], Sequence[Scalar]]
+    payload: bool = False
+    of_links: bool = False
+    by_steps: bool = True
+
+
+def _flat(vectors: Sequence[Vector]) -> list[Scalar]:
+    return [scalar for vector in vectors for scalar in vector]
+
+
+def _of_links(name: str) -> Quantity:
+    return Quantity(
+        "qva", lambda model: (len(model.links), 3), lambda motion: _flat(getattr(motion.result, name)), True, True
+    )
+
+
+def _force_at(motion: Motion, v: Sequence[Scalar], a: Sequence[Scalar], gravity: bool = True) -> list[Scalar]:
+    """The driving forces at other rates and accelerations."""
+    model = motion.model if gravity else motion.model.with_gravity(np.zeros(3))
+    return dynamics(model, motion.arithmetic, motion.q, v, a, links=motion.links).tau
+
+
+def _mass_matrix(motion: Motion) -> list[Scalar]:
+    """M(q): column j is what an acceleration of 1 in coordinate j alone takes, without gravity and rates."""
+    n = motion.model.nv
+    rest = [0.0] * n
+    columns = [_force_at(motion, rest, [float(i == j) for i in range(n)], gravity=False) for j in range(n)]
+    return [columns[max(i, j)][min(i, j)] for i in range(n) for j in range(n)]  # symmetric to the last bit
+
+
+def _nonlinear_effects(motion: Motion) -> list[Scalar]:
+    """What acts at these rates without acceleration: Coriolis, centrifugal, gravity, friction."""
+    return _force_at(motion, motion.v, [0.0] * motion.model.nv)
+
+
+def _gravity_torque(motion: Motion) -> list[Scalar]:
+    """What holds the robot still."""
+    return _force_at(motion, [0.0] * motion.model.nv, [0.0] * motion.model.nv)
+
+
+def _regressor(motion: Motion) -> list[Scalar]:
+    """Y(q, v, a) with tau - tau_joint = Y pi: the derivative of the recursion by the parameters of each link.
+
+    At a point mass of 1 kg in the origin of {i} the derivatives by mass, r_C and tensor about the centre of mass are
+    those by mass, first moment and tensor about the origin; as tau is linear in them, they hold everywhere.
+    """
+    still = motion.model.without_drives()
+    links = [_with_parameters(body, 10 * i) for i, body in enumerate(bodies(still, motion.arithmetic))]
+    tau = dynamics(still, motion.arithmetic, motion.q, motion.v, motion.a, links=links).tau
+    return [part_of(row, k) for row in tau for k in range(10 * len(links))]
+
+
+def _with_parameters(body: Body, first: int) -> Body:
+    """The body as a point mass at its origin, whose ten parameters are directions from `first` on."""
+    m, x, y, z, xx, xy, yy, xz, yz, zz = (Dual(0.0, {first + k: 1.0}) for k in range(10))
+    tensor = Matrix((Vector(xx, xy, xz), Vector(xy, yy, yz), Vector(xz, yz, zz)))
+    return replace(body, M=m + 1.0, r_C=Vector(x, y, z), I=tensor)
+
+
+def _derivatives(by: str) -> Quantity:
+    """D tau by the coordinates (tangent directions, as the rates), rates or accelerations."""
+
+    def scalars(motion: Motion) -> list[Scalar]:
+        n = motion.model.nv
+        moved = {name: getattr(motion, name) for name in "qva"}
+        seed = tangent if by == "q" else _plain
+        moved[by] = seed(motion.model.moving, moved[by], motion.arithmetic)
+        arithmetic = over_duals(motion.arithmetic)
+        tau = dynamics(motion.model, arithmetic, **moved, payloads=motion.payloads, links=motion.links).tau
+        return [part_of(row, k) for row in tau for k in range(n)]
+
+    return Quantity("qva", lambda model: (model.nv, model.nv), scalars, payload=True, by_steps=False)
+
+
+def _plain(joints: Sequence[Joint], x: Sequence[Scalar], arithmetic: Arithmetic) -> list[Dual]:
+    return [Dual(value, {k: 1.0}) for k, value in enumerate(x)]
+
+
+def _per_joint(model: Model) -> tuple[int, ...]:
+    return (model.nv,)
+
+
+QUANTITIES: dict[str, Quantity] = {
+    "tau": Quantity("qva", _per_joint, lambda motion: motion.result.tau, payload=True),
+    "F": _of_links("F"),
+    "N": _of_links("N"),
+    "f": _of_links("f"),
+    "n": _of_links("n"),
+    "tau_joint": Quantity("qva", _per_joint, lambda motion: motion.result.tau_joint, payload=True),
+    "mass_matrix": Quantity("q", lambda model: (model.nv, model.nv), _mass_matrix),
+    "nonlinear_effects": Quantity("qv", _per_joint, _nonlinear_effects),
+    "gravity_torque": Quantity("q", _per_joint, _gravity_torque),
+    "regressor": Quantity(
+        "qva", lambda model: (model.nv, 10 * len(model.links)), _regressor, of_links=True, by_steps=False
+    ),
+    "dtau_dq": _derivatives("q"),
+    "dtau_dv": _derivatives("v"),
+    "dtau_da": _derivatives("a"),
+}
+"""By name; `robot.compile(outputs=...)` takes any of them."""
+
+BOUND = "_bound"
+"""What the name of a bound ends with, behind that of what it bounds."""
+
+
+def _bound_of(quantity: Quantity) -> Quantity:
+    """A bound on the rounding of a quantity: `bounds.with_bounds` makes it from the quantity's own operations."""
+    return replace(quantity, by_steps=False)
+
+
+QUANTITIES |= {name + BOUND: _bound_of(quantity) for name, quantity in QUANTITIES.items()}

@@ -1,0 +1,137 @@
+"""Which column of a block holds what: the steps that were taken become calls, and columns are used again."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field
+
+from rttrr_pin.compile.call_program import Call, Schedule, Step
+from rttrr_pin.compile.expression import Graph, Node
+from rttrr_pin.compile.outlining import Recorder, Taken
+from rttrr_pin.compile.program import Field, Program
+
+
+def arranged(
+    recorder: Recorder, results: Sequence[int], inputs: tuple[Field, ...], outputs: tuple[Field, ...]
+) -> Schedule:
+    """The schedule of what was recorded.
+
+    Args:
+        recorder: has seen the robot.
+        results: nodes of its graph, for each number of the outputs.
+        inputs: the arrays that are read.
+        outputs: the arrays that are written.
+
+    Returns:
+        Calls in the order in which the specification took the steps.
+    """
+    taken = recorder.needed(results)
+    steps = list(dict.fromkeys((*STANDING, *(one.recorded.step for one in taken))))
+    index = {step: k for k, step in enumerate(steps)}
+    width = sum(field.width for field in inputs)
+    columns = _Columns(recorder.graph, width, results, _last_reads(taken))
+    calls = [columns.call(k, index[one.recorded.step], one) for k, one in enumerate(taken)]
+    rest = [columns.rest(place, x) for place, x in enumerate(results)]
+    seen = _seen(taken, results)
+    return Schedule(
+        steps=tuple(steps),
+        calls=(*calls, *(call for call in rest if call is not None)),
+        inputs=inputs,
+        outputs=outputs,
+        between=columns.count - width - len(results),
+        unread=tuple(place for place in range(width) if recorder.graph.input(place) not in seen),
+    )
+
+
+def _read(one: Taken) -> list[int]:
+    """The nodes in the columns that a step reads."""
+    return [leaf.number for place in one.recorded.step.columns if isinstance(leaf := one.leaves[place], Node)]
+
+
+def _last_reads(taken: Sequence[Taken]) -> dict[int, int]:
+    """The last step that reads each node."""
+    return {x: k for k, one in enumerate(taken) for x in _read(one)}
+
+
+def _seen(taken: Sequence[Taken], results: Sequence[int]) -> set[int]:
+    """Nodes that the results depend on."""
+    seen = set(results)
+    for one in reversed(taken):
+        for k, x in enumerate(one.live()):
+            if x in seen:
+                leaves = (one.leaves[place] for place in one.recorded.step.reads[k])
+                seen.update(leaf.number for leaf in leaves if isinstance(leaf, Node))
+    return seen
+
+
+@dataclass(eq=False)
+class _Columns:
+    """Gives columns to nodes.
+
+    Attributes:
+        graph: of the nodes.
+        width: columns of the inputs.
+        results: nodes of the outputs, whose columns lie behind those.
+        last: the last call that reads each node; from then on its column is free.
+        of: the column of each node.
+        free: columns that hold nothing that is still needed; the one used last is used first.
+        count: of columns so far.
+    """
+
+    graph: Graph
+    width: int
+    results: Sequence[int]
+    last: dict[int, int]
+    of: dict[int, int] = field(default_factory=dict)
+    free: list[int] = field(default_factory=list)
+    count: int = 0
+
+    def __post_init__(self) -> None:
+        self.count = self.width + len(self.results)
+        self.of = {x: self.width + place for place, x in reversed(list(enumerate(self.results)))}
+        self.of |= {self.graph.input(place): place for place in range(self.width)}
+
+    def call(self, k: int, step: int, one: Taken) -> Call:
+        """The call, with columns for what it yields; they may be those of what it reads last."""
+        read = _read(one)
+        columns = tuple(self.of.get(x, 0) for x in read)  # 0 where only results that nobody needs depend on it
+        self._release(x for x in dict.fromkeys(read) if self.last[x] == k)
+        live = one.live()
+        for x in live:
+            if x not in self.of:
+                self.of[x] = self._column()
+        self._release(x for x in live if x not in self.last)  # written because other calls of this step need it
+        given = (one.leaves[place] for place in one.recorded.step.numbers)
+        numbers = tuple(leaf for leaf in given if not isinstance(leaf, Node))
+        return Call(step, columns, numbers, tuple(self.of[x] for x in live))
+
+    def _release(self, nodes: Iterable[int]) -> None:
+        columns = (self.of[x] for x in nodes if x in self.of)
+        self.free.extend(column for column in columns if column >= self.width + len(self.results))
+
+    def _column(self) -> int:
+        if self.free:
+            return self.free.pop()
+        self.count += 1
+        return self.count - 1
+
+    def rest(self, place: int, x: int) -> Call | None:
+        """What fills the column of an output that no step wrote."""
+        column = self.width + place
+        if self.of[x] != column:
+            return Call(COPY, (self.of[x],), (), (column,))
+        return Call(FILL, (), (self.graph.value[x],), (column,)) if x in self.graph.value else None
+
+
+def _same(column: bool) -> Step:
+    """A step that hands on what it is given."""
+    graph = Graph()
+    program = Program(graph, (Field("scalars", (1,)),), (Field("results", (1,)),), (graph.input(0),))
+    return Step(program, (0,) * column, (0,) * (not column))
+
+
+STANDING = (_same(column=True), _same(column=False))
+"""The first steps of every schedule: an output may be an input, the same as another output, or a number."""
+
+COPY, FILL = 0, 1
+"""Their indices."""

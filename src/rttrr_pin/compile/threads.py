@@ -1,0 +1,59 @@
+"""Parts of a batch on several threads.
+
+Which thread computes a state has no influence on its bits, so parts are handed out as threads become free.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
+from functools import lru_cache
+
+from rttrr_pin.core.inputs import whole_number
+
+PART = 8192
+"""States in a part: a millisecond or so, after which Ctrl-C is heard."""
+
+WORTH_A_THREAD = 100_000
+"""Numbers in and out below which a second thread costs more than it brings."""
+
+
+def available() -> int:
+    """Processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def count(threads: int | None, numbers: int) -> int:
+    """How many threads to use.
+
+    Args:
+        threads: as the user asks; None for as many as pay.
+        numbers: numbers in and out of the batch.
+
+    Raises:
+        InputError: threads is no positive whole number.
+    """
+    if threads is not None:
+        return whole_number("threads", threads, 1, 4096)
+    return max(1, min(available(), numbers // WORTH_A_THREAD))
+
+
+def run(task: Callable[[int, int], bool], rows: int, threads: int) -> bool:
+    """Run a task on all parts of a batch; tells whether one of them said True."""
+    starts = range(0, rows, PART)
+    if threads == 1 or len(starts) == 1:
+        return True in [task(start, min(start + PART, rows)) for start in starts]
+    pool = _pool(threads, os.getpid())
+    parts: list[Future[bool]] = [pool.submit(task, start, min(start + PART, rows)) for start in starts]
+    try:
+        return True in [part.result() for part in parts]
+    finally:
+        for part in parts:
+            part.cancel()
+
+
+@lru_cache(maxsize=4)
+def _pool(threads: int, process: int) -> ThreadPoolExecutor:
+    """Threads that wait for work; a forked process gets its own."""
+    return ThreadPoolExecutor(threads, thread_name_prefix="rttrr-pin")

@@ -1,0 +1,151 @@
+"""From a robot to its program: the specification, run on scalars that record."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from rttrr_pin.compile.constants import Known
+from rttrr_pin.compile.expression import Graph, Node, Op
+from rttrr_pin.compile.program import Field, Program
+from rttrr_pin.compile.quantities import QUANTITIES, Motion
+from rttrr_pin.compile.regrouping import lump
+from rttrr_pin.core.algebra import Scalar, Vector
+from rttrr_pin.core.dynamics import bodies
+from rttrr_pin.core.joint_motion import Body
+from rttrr_pin.core.model import Model
+from rttrr_pin.core.newton_euler import Payload
+from rttrr_pin.core.scalars import Arithmetic
+
+
+@dataclass(frozen=True, slots=True)
+class PayloadSlot:
+    """Where a payload acts, and in whose axes; its numbers come with each state.
+
+    Attributes:
+        link: index of the link.
+        in_base: whether in base axes; else in the link's.
+    """
+
+    link: int
+    in_base: bool = False
+
+
+def trace(
+    model: Model,
+    outputs: Sequence[str],
+    payloads: Sequence[PayloadSlot] = (),
+    lumped: bool = True,
+    most: int | None = None,
+    arithmetic: Arithmetic | None = None,
+) -> Program:
+    """The program of a robot.
+
+    Args:
+        model: the robot.
+        outputs: names from `QUANTITIES`.
+        payloads: where payloads act.
+        lumped: whether inertia may be moved between links where that leaves the outputs as they are.
+        most: nodes to record before giving up; None for any number.
+        arithmetic: `TRACING` or `KNOWING`; None for the former.
+
+    Returns:
+        The program as the specification's operations leave it; `simplify` shortens it.
+
+    Raises:
+        GraphFullError: it takes more nodes.
+    """
+    graph = Graph(most=most)
+    results = record(graph, arithmetic or TRACING, model, outputs, payloads, lumped)
+    return Program(graph, fields(model, outputs, payloads), outputs_of(model, outputs), results)
+
+
+def record(
+    graph: Graph,
+    arithmetic: Arithmetic,
+    model: Model,
+    outputs: Sequence[str],
+    payloads: Sequence[PayloadSlot],
+    lumped: bool = True,
+) -> tuple[int, ...]:
+    """Run the specification on nodes of a graph, whose first inputs are the numbers of `fields`.
+
+    Args:
+        graph: where to record.
+        arithmetic: `TRACING`, or one made from it.
+        model: the robot.
+        outputs: names from `QUANTITIES`.
+        payloads: where payloads act.
+        lumped: as in `trace`.
+
+    Returns:
+        The nodes of the outputs' numbers.
+    """
+    wanted = [QUANTITIES[name] for name in outputs]
+    links: Sequence[Body] | None = None
+    if lumped and not any(quantity.of_links for quantity in wanted):
+        model, links = lump(model, bodies(model, arithmetic))
+    inputs = fields(model, outputs, payloads)
+    columns = (Node(graph, graph.input(place)) for place in range(sum(field.width for field in inputs)))
+    given = {field.name: [next(columns) for _ in range(field.width)] for field in inputs}
+    motion = Motion(
+        model,
+        arithmetic,
+        given.get("q", []),
+        given.get("v", []),
+        given.get("a", []),
+        payloads=[
+            Payload(slot.link, Vector(*given[f"payload_{k}_f"]), Vector(*given[f"payload_{k}_n"]), slot.in_base)
+            for k, slot in enumerate(payloads)
+        ],
+        links=links,
+    )
+    return tuple(_number(graph, scalar) for quantity in wanted for scalar in quantity.scalars(motion))
+
+
+def outputs_of(model: Model, outputs: Sequence[str]) -> tuple[Field, ...]:
+    """The arrays that a program writes."""
+    return tuple(Field(name, QUANTITIES[name].shape(model)) for name in outputs)
+
+
+def fields(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot] = ()) -> tuple[Field, ...]:
+    """The arrays that a program reads: what its outputs depend on, then force and moment of each payload."""
+    sizes = {"q": model.nq, "v": model.nv, "a": model.nv}
+    needed = [name for name in sizes if any(name in QUANTITIES[output].inputs for output in outputs)]
+    slots = [Field(f"payload_{k}_{name}", (3,)) for k in range(len(payloads)) for name in "fn"]
+    return (*(Field(name, (sizes[name],)) for name in needed), *slots)
+
+
+def _number(graph: Graph, scalar: Scalar) -> int:
+    """The node of a scalar that may have stayed a plain number."""
+    return scalar.number if isinstance(scalar, Node) else graph.constant(scalar)
+
+
+def _keep(vector: Vector) -> Vector:
+    for scalar in vector:
+        if isinstance(scalar, Node):
+            scalar.graph.kept.add(scalar.number)
+    return vector
+
+
+def _value(value: float, error: float) -> float:
+    return value
+
+
+def _sincos(q: Scalar) -> tuple[Scalar, Scalar]:
+    """Also of a plain number: what follows another joint with multiplier 0 stands still."""
+    if isinstance(q, Node):
+        return q.function(Op.SIN), q.function(Op.COS)
+    return math.sin(q), math.cos(q)
+
+
+def _sign(x: Scalar) -> Scalar:
+    return x.function(Op.SIGN) if isinstance(x, Node) else float((x > 0) - (x < 0))
+
+
+TRACING = Arithmetic(number=_value, column=lambda x: x, sincos=_sincos, sign=_sign, keep=_keep)
+"""The arithmetic that records; numbers of the model stay floats and fold among themselves."""
+
+KNOWING = replace(TRACING, number=Known)
+"""The same; numbers of the model carry a bound on their error, and so do those that they fold into."""

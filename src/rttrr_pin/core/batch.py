@@ -1,0 +1,99 @@
+"""Batches: one shape for all inputs, blocks that stay in the cache, arrays for the results."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.core.algebra import Scalar, Vector
+from rttrr_pin.core.dynamics import Result
+from rttrr_pin.core.model import Model
+from rttrr_pin.core.payload import Load
+from rttrr_pin.core.wrench import LINK_QUANTITIES, QUANTITIES, LinkWrenches
+from rttrr_pin.errors import NumberError, ShapeError
+
+Array = NDArray[np.float64]
+
+RESULTS = (*QUANTITIES, "tau_joint")
+"""The arrays of `LinkWrenches`."""
+
+BLOCK = 4096
+"""States computed at a time: the temporaries of one block stay in the cache, and memory does not grow with N."""
+
+
+def blocks(rows: int, size: int = BLOCK) -> Iterator[slice]:
+    """Consecutive slices that cover a batch."""
+    return (slice(start, min(start + size, rows)) for start in range(0, rows, size))
+
+
+def empty_wrenches(model: Model, rows: int) -> LinkWrenches:
+    """Arrays for the results of a batch, not yet filled."""
+    spatial = (rows, len(model.links), 3)
+    arrays = {key: np.empty(spatial if key in LINK_QUANTITIES else (rows, model.nv)) for key in RESULTS}
+    return LinkWrenches.of(arrays, model.link_names, model.v_names)
+
+
+def fill(out: LinkWrenches, part: slice, result: Result) -> None:
+    """Write the scalars of one block into the arrays of the batch."""
+    _fill_columns(out.tau[part], result.tau)
+    _fill_columns(out.tau_joint[part], result.tau_joint)
+    for key in LINK_QUANTITIES:
+        vectors_: list[Vector] = getattr(result, key)
+        for i, vector in enumerate(vectors_):
+            _fill_columns(getattr(out, key)[part, i], list(vector))
+
+
+def _fill_columns(out: Array, scalars: Sequence[Scalar]) -> None:
+    for column, scalar in enumerate(scalars):
+        out[:, column] = scalar
+
+
+def batch_shape(arrays: Sequence[Array], loads: Sequence[Load]) -> tuple[int, ...]:
+    """The common leading shape."""
+    named = dict(zip("qva", (x.shape[:-1] for x in arrays), strict=True))
+    for load in loads:
+        named[f"payload force at link {load.link + 1}"] = load.f.shape[:-1]
+        named[f"payload moment at link {load.link + 1}"] = load.n.shape[:-1]
+    return common_shape(named)
+
+
+def common_shape(named: Mapping[str, tuple[int, ...]]) -> tuple[int, ...]:
+    """The shape that leading axes, by the name of their array, broadcast to.
+
+    Raises:
+        ShapeError: they do not.
+    """
+    try:
+        return np.broadcast_shapes(*named.values())
+    except ValueError:
+        shapes = ", ".join(f"{name}: {shape}" for name, shape in named.items())
+        raise ShapeError(
+            f"the leading axes do not broadcast ({shapes}): give all the same batch shape",
+            name="q, v, a",
+            got=(),
+            wanted="leading axes that broadcast",
+        ) from None
+
+
+def flat(load: Load, batch: tuple[int, ...], rows: int) -> Load:
+    """The load with the batch on one axis."""
+    f, n = (x if x.ndim == 1 else np.broadcast_to(x, (*batch, 3)).reshape(rows, 3) for x in (load.f, load.n))
+    return Load(load.link, f, n, load.in_base)
+
+
+def check_overflow(out: LinkWrenches, q: Array, v: Array, a: Array) -> None:
+    """Finite inputs whose results are not finite have overflowed; say where."""
+    for key, x in out.items():
+        if not np.isfinite(x).all():
+            row = int(np.argwhere(~np.isfinite(x))[0][0])
+            sizes = {name: float(np.abs(y[row]).max(initial=0.0)) for name, y in (("q", q), ("v", v), ("a", a))}
+            largest = max(sizes, key=sizes.__getitem__)
+            raise NumberError(
+                f"{key} overflows in state {row}, where |{largest}| reaches {sizes[largest]:.3g}: "
+                "pass coordinates of a size that a robot can have, in rad, m and s",
+                name=largest,
+                index=(row,),
+                value=sizes[largest],
+            )

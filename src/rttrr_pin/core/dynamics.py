@@ -1,0 +1,182 @@
+"""The dynamics of a robot: the recursion, and what joints take themselves, whom they follow.
+
+Written once over scalars of any kind, as the recursion is: mimic joints, armature, damping and friction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import islice
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.core.algebra import Matrix, Scalar, Vector
+from rttrr_pin.core.joint import Drive, Joint, Mimic
+from rttrr_pin.core.joint_motion import Body, JointState
+from rttrr_pin.core.model import Link, Model
+from rttrr_pin.core.newton_euler import Payload, newton_euler
+from rttrr_pin.core.payload import Load, payloads_of
+from rttrr_pin.core.scalars import AXIS_ERROR, ROTATION_ERROR, UNIT_ROUNDOFF, Arithmetic, NumberOf, columns
+
+Array = NDArray[np.float64]
+
+
+def bodies(model: Model, arithmetic: Arithmetic) -> list[Body]:
+    """The links and joints of a model with their numbers as scalars."""
+    return _bodies(model, arithmetic.number)
+
+
+@lru_cache(maxsize=32)
+def _bodies(model: Model, number: NumberOf) -> list[Body]:
+    """Models and bodies are frozen, so the last few are kept."""
+    return [body_of(*pair, number) for pair in zip(model.joints, model.links, strict=True)]
+
+
+@dataclass(frozen=True, slots=True)
+class Result:
+    """What the specification yields, in scalars of one kind.
+
+    Attributes:
+        tau: driving force of each degree of freedom: what crosses the joint along it, plus `tau_joint`.
+        tau_joint: the part that the joint itself takes (armature, friction).
+        F, N, f, n: of each link, in {i}.
+    """
+
+    tau: list[Scalar]
+    tau_joint: list[Scalar]
+    F: list[Vector]
+    N: list[Vector]
+    f: list[Vector]
+    n: list[Vector]
+
+
+def evaluate(model: Model, arithmetic: Arithmetic, q: Array, v: Array, a: Array, loads: Sequence[Load] = ()) -> Result:
+    """The specification on a batch.
+
+    Args:
+        model: the robot.
+        arithmetic: the kind of scalar.
+        q: coordinates, (N, nq) [rad or m]; one state, (1, nq), is computed with Python floats.
+        v: rates, (N, nv).
+        a: accelerations, (N, nv).
+        loads: payloads.
+
+    Returns:
+        The five quantities in scalars of that kind; what no state changes may be a plain number.
+    """
+    q_, v_, a_ = ([arithmetic.column(column) for column in columns(x)] for x in (q, v, a))
+    return dynamics(model, arithmetic, q_, v_, a_, payloads_of(loads, arithmetic))
+
+
+def dynamics(
+    model: Model,
+    arithmetic: Arithmetic,
+    q: Sequence[Scalar],
+    v: Sequence[Scalar],
+    a: Sequence[Scalar],
+    payloads: Sequence[Payload] = (),
+    links: Sequence[Body] | None = None,
+    gravity: Vector | None = None,
+) -> Result:
+    """The specification on scalars.
+
+    Args:
+        model: the robot.
+        arithmetic: the kind of scalar.
+        q: a scalar for each coordinate.
+        v: a scalar for each rate.
+        a: a scalar for each acceleration.
+        payloads: what the robot exerts on its surroundings.
+        links: bodies to take instead of the model's own.
+        gravity: field to take instead of the model's own.
+
+    Returns:
+        The five quantities in scalars of that kind; what no state changes may be a plain number.
+    """
+    states = joint_states(model, arithmetic, q, v, a)
+    if gravity is None:
+        gravity = Vector.of(model.gravity, lambda value: arithmetic.number(value, 0.0))
+    parents = [joint.parent for joint in model.joints]
+    sincos, keep, call = arithmetic.sincos, arithmetic.keep, arithmetic.call
+    result = newton_euler(links or bodies(model, arithmetic), parents, states, gravity, payloads, sincos, keep, call)
+    own = [call(_drive, joint.drive, state, arithmetic) for joint, state in zip(model.joints, states, strict=True)]
+    across, tau_joint = (_generalised(model, arithmetic, forces) for forces in (result.tau, own))
+    tau = [x + y for x, y in zip(across, tau_joint, strict=True)]
+    return Result(tau, tau_joint, result.F, result.N, result.f, result.n)
+
+
+def joint_states(
+    model: Model, arithmetic: Arithmetic, q: Sequence[Scalar], v: Sequence[Scalar], a: Sequence[Scalar]
+) -> list[JointState]:
+    """The columns of q, v, a by joint; a joint that follows another has its columns made from that one's."""
+    q_, v_, a_ = iter(q), iter(v), iter(a)
+    own: dict[int, JointState] = {}
+    for i in model.independent:
+        nq, nv = model.joints[i].nq, model.joints[i].nv
+        own[i] = JointState(list(islice(q_, nq)), list(islice(v_, nv)), list(islice(a_, nv)))
+    at_rest = JointState((), (), ())
+    return [
+        own.get(i, at_rest) if joint.mimic is None else _following(joint.mimic, own[joint.mimic.joint], arithmetic)
+        for i, joint in enumerate(model.joints)
+    ]
+
+
+def _following(mimic: Mimic, master: JointState, arithmetic: Arithmetic) -> JointState:
+    """Q = multiplier q_master + offset, and its time derivatives."""
+    rounded = UNIT_ROUNDOFF if mimic.rounded else 0.0
+    multiplier, offset = (arithmetic.number(x, rounded * abs(x)) for x in (mimic.multiplier, mimic.offset))
+    (q,), (v,), (a,) = master.q, master.v, master.a
+    return JointState([q * multiplier + offset], [v * multiplier], [a * multiplier])
+
+
+def _drive(drive: Drive, state: JointState, arithmetic: Arithmetic) -> list[Scalar]:
+    """Armature a + damping v + friction sign(v) for each degree of freedom; 0 where the joint has none of them."""
+    parts = []
+    for v, a in zip(state.v, state.a, strict=True):
+        force: Scalar = 0
+        if drive.armature:
+            force = a * arithmetic.number(drive.armature, 0.0) + force
+        if drive.damping:
+            force = v * arithmetic.number(drive.damping, 0.0) + force
+        if drive.friction:
+            force = arithmetic.sign(v) * arithmetic.number(drive.friction, 0.0) + force
+        parts.append(force)
+    return parts
+
+
+def _generalised(model: Model, arithmetic: Arithmetic, forces: Sequence[Sequence[Scalar]]) -> list[Scalar]:
+    """Forces of all joints as forces of the independent ones: what drives a joint also drives those that follow it.
+
+    By virtual work a joint that follows with multiplier m adds m times its own force.
+    """
+    total = {i: list(forces[i]) for i in model.independent}
+    for i, joint in enumerate(model.joints):
+        if joint.mimic is not None:
+            rounded = UNIT_ROUNDOFF if joint.mimic.rounded else 0.0
+            multiplier = arithmetic.number(joint.mimic.multiplier, rounded * abs(joint.mimic.multiplier))
+            total[joint.mimic.joint][0] = total[joint.mimic.joint][0] + forces[i][0] * multiplier
+    return [force for i in model.independent for force in total[i]]
+
+
+def body_of(joint: Joint, link: Link, number: NumberOf) -> Body:
+    """One link with its joint, in scalars made by `number`."""
+
+    def within(error: float) -> Callable[[float], Scalar]:
+        return lambda value: number(value, error)
+
+    # Rotation matrices from rpy, axes divided by their length and turned tensors are rounded; the rest is as written.
+    turned = ROTATION_ERROR if joint.rotated else 0.0
+    normalised = AXIS_ERROR if np.count_nonzero(joint.axis) > 1 else 0.0
+    turned_tensor = 8 * ROTATION_ERROR * float(np.linalg.norm(link.inertia)) if link.rotated else 0.0
+    return Body(
+        type=joint.type,
+        axis=Vector.of(joint.axis, lambda value: number(value, normalised * abs(value))),
+        R=Matrix.of(joint.R, within(turned)),
+        p=Vector.of(joint.p, within(0.0)),
+        M=number(link.mass, 0.0),
+        r_C=Vector.of(link.com, within(0.0)),
+        I=Matrix.of(link.inertia, within(turned_tensor)),
+    )

@@ -1,0 +1,209 @@
+"""Energy, momentum and power of a robot in motion, over scalars of any kind.
+
+From the kinematics of the joints alone: how {i} stands on its parent and how fast it moves against it
+(`joint_motion.MOTION`). No acceleration and no force is computed here; those come from derivatives, by duals. So what
+is built on this module shares nothing with the Newton-Euler recursion but the motion of single joints, and that is
+checked by derivatives too (law K101).
+
+Source: Goldstein, "Classical Mechanics", chapters 1 and 5; for twists as rates Kirchhoff's equations, Lamb,
+"Hydrodynamics", article 124.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from rttrr_pin.core.algebra import IDENTITY, ZERO, Matrix, Scalar, Vector
+from rttrr_pin.core.dual import part_of, value_of
+from rttrr_pin.core.dynamics import joint_states
+from rttrr_pin.core.joint import JointType
+from rttrr_pin.core.joint_motion import MOTION, Body, JointState
+from rttrr_pin.core.model import Model
+from rttrr_pin.core.scalars import Arithmetic
+from rttrr_pin.core.tangent import TIME
+
+if TYPE_CHECKING:
+    from rttrr_pin.core.newton_euler import Payload
+
+
+@dataclass(frozen=True, slots=True)
+class LinkState:
+    """Where link i is and how fast.
+
+    Attributes:
+        R: R_0_i.
+        p: p_0_i, in base axes [m].
+        w: angular velocity, in {i} [rad/s].
+        v: velocity of the origin of {i}, in {i} [m/s].
+    """
+
+    R: Matrix
+    p: Vector
+    w: Vector
+    v: Vector
+
+    def velocity_of(self, r: Vector) -> Vector:
+        """Velocity of the point of the link at r, v + w x r; both in {i}."""
+        return self.v + self.w.cross(r)
+
+    def place_of(self, r: Vector) -> Vector:
+        """Where the point of the link at r is: p + R r, from the base's origin in base axes."""
+        return self.p + self.R @ r
+
+    @property
+    def now(self) -> LinkState:
+        """The values of what is made of duals."""
+        a, b, c = (now(row) for row in self.R.rows)
+        return LinkState(Matrix((a, b, c)), now(self.p), now(self.w), now(self.v))
+
+
+def link_states(
+    model: Model, links: Sequence[Body], states: Sequence[JointState], arithmetic: Arithmetic
+) -> list[LinkState]:
+    """Placement and velocity of each link, from the base outwards.
+
+    R_0_i = R_0_p R,   p_0_i = p_0_p + R_0_p p,   w_i = R^T w_p + w,   v_i = R^T (v_p + w_p x p) + v
+
+    with R, p, w, v of the joint against its parent p.
+    """
+    base = LinkState(IDENTITY, ZERO, ZERO, ZERO)
+    found: list[LinkState] = []
+    for joint, body, state in zip(model.joints, links, states, strict=True):
+        parent = found[joint.parent] if joint.parent >= 0 else base
+        motion = MOTION[body.type](body, state, arithmetic.sincos)
+        R, p = motion.R, motion.p
+        found.append(
+            LinkState(
+                R=parent.R @ R,
+                p=parent.p + parent.R @ p,
+                w=R.T @ parent.w + motion.w,
+                v=R.T @ (parent.v + parent.w.cross(p)) + motion.v,
+            )
+        )
+    return found
+
+
+def moving_links(
+    model: Model, links: Sequence[Body], q: Sequence[Scalar], v: Sequence[Scalar], arithmetic: Arithmetic
+) -> list[LinkState]:
+    """The same from coordinates and rates."""
+    at_rest = [0] * len(v)
+    return link_states(model, links, joint_states(model, arithmetic, q, v, at_rest), arithmetic)
+
+
+def kinetic_energy(links: Sequence[Body], moving: Sequence[LinkState]) -> Scalar:
+    """T = sum of (M v_C . v_C + w . I w) / 2 [J]."""
+    total: Scalar = 0
+    for body, link in zip(links, moving, strict=True):
+        v_C = link.velocity_of(body.r_C)
+        total = v_C.dot(v_C) * body.M + link.w.dot(body.I @ link.w) + total
+    return total * 0.5
+
+
+def potential_energy(links: Sequence[Body], moving: Sequence[LinkState], gravity: Vector) -> Scalar:
+    """V = - sum of M g . p_C [J]; zero where the centre of mass is at the base's origin."""
+    total: Scalar = 0
+    for body, link in zip(links, moving, strict=True):
+        total = gravity.dot(link.place_of(body.r_C)) * body.M + total
+    return -total
+
+
+def linear_momentum(body: Body, link: LinkState) -> Vector:
+    """M v_C of one link, in base axes [kg m/s]."""
+    P: Vector = link.R @ (link.velocity_of(body.r_C) * body.M)
+    return P
+
+
+def spin(body: Body, link: LinkState) -> Vector:
+    """I w of one link: its angular momentum about its centre of mass, in base axes [kg m^2/s]."""
+    return link.R @ (body.I @ link.w)
+
+
+def angular_momentum(body: Body, link: LinkState) -> Vector:
+    """p_C x M v_C + I w of one link: about the base's origin, in base axes [kg m^2/s]."""
+    return link.place_of(body.r_C).cross(linear_momentum(body, link)) + spin(body, link)
+
+
+def in_base_axes(payload: Payload, link: LinkState) -> tuple[Vector, Vector]:
+    """f_tool, n_tool at the origin of the link, in base axes [N, N m]."""
+    if payload.in_base:
+        return payload.f, payload.n
+    return link.R @ payload.f, link.R @ payload.n
+
+
+def payload_power(payloads: Sequence[Payload], moving: Sequence[LinkState]) -> Scalar:
+    """What the robot gives its surroundings: sum of f_tool . v + n_tool . w [W]."""
+    total: Scalar = 0
+    for payload in payloads:
+        link = moving[payload.link]
+        f, n = payload.f, payload.n
+        if payload.in_base:
+            f, n = link.R.T @ f, link.R.T @ n
+        total = f.dot(link.v) + n.dot(link.w) + total
+    return total
+
+
+def drive_power(
+    model: Model, arithmetic: Arithmetic, states: Sequence[JointState], rates: Sequence[JointState]
+) -> Scalar:
+    """What the joints themselves take at these rates: sum of (armature a + damping v + friction sign v) . rate [W].
+
+    Args:
+        model: the robot.
+        arithmetic: the kind of scalar of states.
+        states: v and a that the forces are of, joint by joint.
+        rates: the rates that they work at: the same, or duals of them for the force along each.
+    """
+    total: Scalar = 0
+    for joint, state, moved in zip(model.joints, states, rates, strict=True):
+        drive = joint.drive
+        coefficients = (drive.armature, drive.damping, drive.friction)
+        for v, a, rate in zip(state.v, state.a, moved.v, strict=True):
+            for coefficient, factor in zip(coefficients, (a, v, arithmetic.sign(v)), strict=True):
+                if coefficient:
+                    total = rate * (factor * arithmetic.number(coefficient, 0.0)) + total
+    return total
+
+
+def gyroscopic(model: Model, v: Sequence[Scalar], p: Sequence[Scalar]) -> list[Scalar]:
+    """What turns with {i}: where rates are a twist (v, w) in {i}, its momenta (P, L) turn with the frame.
+
+        force w x P,   moment w x L + v x P          (Kirchhoff)
+
+    Zero for joints whose rates are derivatives of coordinates.
+
+    Args:
+        model: the robot.
+        v: rates.
+        p: momenta that belong to them.
+    """
+    out: list[Scalar] = []
+    at = 0
+    for joint in model.moving:
+        own_v, own_p = v[at : at + joint.nv], p[at : at + joint.nv]
+        if joint.type is JointType.FLOATING:
+            (linear, w), (P, L) = (_halves(x) for x in (own_v, own_p))
+            out += [*w.cross(P), *(w.cross(L) + linear.cross(P))]
+        elif joint.type is JointType.PLANAR:
+            (v_x, v_y, w_z), (P_x, P_y, _) = own_v, own_p
+            out += [-(w_z * P_y), w_z * P_x, v_x * P_y - v_y * P_x]
+        else:
+            out += [0] * joint.nv
+        at += joint.nv
+    return out
+
+
+def _halves(x: Sequence[Scalar]) -> tuple[Vector, Vector]:
+    return Vector(*x[:3]), Vector(*x[3:])
+
+
+def rate_of(vector: Vector) -> Vector:
+    """The time derivative of a vector of duals."""
+    return Vector(*(part_of(x, TIME) for x in vector))
+
+
+def now(vector: Vector) -> Vector:
+    """The values of a vector of duals."""
+    return Vector(*(value_of(x) for x in vector))

@@ -1,0 +1,49 @@
+"""Payloads: what the robot exerts on its surroundings, of a batch and as scalars."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.core.algebra import Vector
+from rttrr_pin.core.newton_euler import Payload
+from rttrr_pin.core.scalars import Arithmetic, columns
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Load:
+    """A payload of a batch: what the robot exerts on its surroundings at one link.
+
+    Attributes:
+        link: index of the link.
+        f: force, (3,) or (N, 3) [N].
+        n: moment about the origin of the link's frame, (3,) or (N, 3) [N m].
+        in_base: whether both are in base axes; else in the link's.
+    """
+
+    link: int
+    f: Array
+    n: Array
+    in_base: bool = False
+
+    def block(self, part: slice) -> Load:
+        """The same for some states of the batch."""
+        f, n = (x if x.ndim == 1 else x[part] for x in (self.f, self.n))
+        return Load(self.link, f, n, self.in_base)
+
+
+def payloads_of(loads: Sequence[Load], arithmetic: Arithmetic) -> list[Payload]:
+    """The payloads of a batch in scalars."""
+    return [
+        Payload(load.link, _vector(load.f, arithmetic), _vector(load.n, arithmetic), load.in_base) for load in loads
+    ]
+
+
+def _vector(x: Array, arithmetic: Arithmetic) -> Vector:
+    """(3,) or (N, 3) as a vector of scalars."""
+    return Vector(*(arithmetic.column(column) for column in columns(np.atleast_2d(x))))

@@ -1,0 +1,81 @@
+"""One recursion, many arithmetics: what it takes to run the reference recursion on one kind of scalar.
+
+An `Arithmetic` says how a number of the model, a column of a batch and a sine become scalars of its kind. `FLOAT` is
+the readable reference: Python floats for one state, NumPy arrays for a batch, the same operations in the same order,
+hence the same bits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.core.algebra import Scalar
+from rttrr_pin.core.joint_motion import SinCos
+from rttrr_pin.core.newton_euler import Call, Keep
+
+Array = NDArray[np.float64]
+
+UNIT_ROUNDOFF = 2.0**-53
+"""u: the relative error of one correctly rounded float64 operation; eps is 2 u."""
+
+EPS = 2 * UNIT_ROUNDOFF
+"""The distance from 1 to the next float64: the unit in which errors are told."""
+
+SLACK = 1.0 + 1e-9
+"""Covers the rounding of running error bounds themselves."""
+
+SINE_ULPS = 4
+"""Of a sine or cosine: what NumPy states for its vectorised float64; compiled code keeps within one."""
+
+ROTATION_ERROR = 8 * UNIT_ROUNDOFF
+"""Of an entry of a rotation matrix made from rpy: a sum of two products of sines and cosines, each within an ulp."""
+
+AXIS_ERROR = 4 * UNIT_ROUNDOFF
+"""Relative, of a component of an axis that was divided by its length."""
+
+
+NumberOf = Callable[[float, float], Scalar]
+
+
+@dataclass(frozen=True, slots=True)
+class Arithmetic:
+    """How to compute with one kind of scalar.
+
+    Attributes:
+        number: from a float of the model, and a bound on how far rounding took it from what the file says.
+        column: from the values of one coordinate: a float (one state) or an array (a batch).
+        sincos: sine and cosine of such a column.
+        sign: -1, 0 or 1 by the sign of a scalar's value.
+        keep: what stands for a finished w, w_dot, v_dot, F, N, f or n.
+        call: takes a step of the recursion.
+    """
+
+    number: NumberOf
+    column: Callable[[float | Array], Scalar]
+    sincos: SinCos
+    sign: Callable[[Scalar], Scalar]
+    keep: Keep = lambda x: x
+    call: Call = lambda step, *arguments: step(*arguments)
+
+
+def _float_sincos(q: float | Array) -> tuple[float | Array, float | Array]:
+    """NumPy's sine and cosine also for one float, since the bits must not depend on the batch."""
+    if isinstance(q, float):
+        return float(np.sin(q)), float(np.cos(q))
+    return np.sin(q), np.cos(q)
+
+
+FLOAT = Arithmetic(
+    number=lambda value, error: value, column=lambda values: values, sincos=_float_sincos, sign=lambda x: np.sign(x)
+)
+
+
+def columns(x: Array) -> list[float | Array]:
+    """The columns of (N, n); floats where there is one state."""
+    if len(x) == 1:
+        return [float(value) for value in x[0]]
+    return [np.ascontiguousarray(column) for column in x.T]

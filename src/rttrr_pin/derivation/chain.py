@@ -1,0 +1,271 @@
+"""A robot in symbols: which letter stands for which of its numbers, and the specification's inputs made of them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from fractions import Fraction
+from functools import cached_property
+
+from rttrr_pin.core.algebra import Matrix, Scalar, Vector
+from rttrr_pin.core.joint import Joint
+from rttrr_pin.core.joint_motion import Body
+from rttrr_pin.core.model import Link, Model
+from rttrr_pin.core.newton_euler import Payload
+from rttrr_pin.core.scalars import ROTATION_ERROR
+from rttrr_pin.derivation.motion import angles, index, motion_symbols
+from rttrr_pin.derivation.ring import Polynomial, Ring, exact
+from rttrr_pin.derivation.symbols import (
+    ACCELERATION,
+    FORCE,
+    INERTIA,
+    LENGTH,
+    MASS,
+    MOMENT,
+    Dimension,
+    Role,
+    Symbol,
+    Terms,
+)
+
+Slot = tuple[str | int, ...]
+"""One number of a robot: ("mass", i), ("com", i, x), ("inertia", i, x, y), ("origin", i, x), ("gravity", x), and of the
+payload ("force", x), ("moment", x); links and joints i from 0, axes x, y of 0, 1, 2."""
+
+Named = tuple[Symbol, int, tuple[Slot, ...]]
+"""A letter, its sign (1, or -1 where it stands for minus the number), and the numbers that it stands for."""
+
+SLOT_DIMENSION: Mapping[str, Dimension] = {
+    "mass": MASS,
+    "com": LENGTH,
+    "inertia": INERTIA,
+    "origin": LENGTH,
+    "gravity": ACCELERATION,
+    "force": FORCE,
+    "moment": MOMENT,
+}
+"""The dimension of each kind of slot."""
+
+AXES = "xyz"
+
+RIGHT_ANGLE_ERROR = 1e-4
+"""How far an entry of a rotation is from 0, 1 or -1 at most where a right angle was meant, and few digits written."""
+
+
+@dataclass(frozen=True)
+class Letters:
+    """What stands for the numbers of a robot.
+
+    Attributes:
+        symbols: the letters.
+        slots: for some numbers, the polynomial in these letters; a number without one stays a number.
+        values: of each letter, as the robot has it.
+    """
+
+    symbols: tuple[Symbol, ...] = ()
+    slots: Mapping[Slot, Terms] = field(default_factory=dict)
+    values: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class SymbolicRobot:
+    """A robot whose numbers are polynomials in symbols.
+
+    Attributes:
+        model: the structure, and the numbers that the letters stand for.
+        letters: which letter stands for which number.
+        payload_link: index of the link that the payload acts at; None: there is no payload.
+        right_angles: whether an entry of a rotation within 1e-4 of 0, 1 or -1 is read as that number: files write
+            1.5708 where they mean a right angle.
+        steps: symbols for what is named on the way; none where all is written out.
+    """
+
+    model: Model
+    letters: Letters
+    payload_link: int | None = None
+    right_angles: bool = False
+    steps: tuple[Symbol, ...] = ()
+
+    @cached_property
+    def ring(self) -> Ring:
+        """The polynomials in all symbols: coordinates, rates, accelerations, sines, cosines, letters, steps."""
+        return Ring([*self.motion, *self.letters.symbols, *self.steps])
+
+    @cached_property
+    def motion(self) -> tuple[Symbol, ...]:
+        """Coordinates, rates, accelerations, their sines, cosines and signs."""
+        return tuple(motion_symbols(self.model))
+
+    @property
+    def q(self) -> list[Polynomial]:
+        """A symbol for each coordinate."""
+        return [self.ring[f"q_{k}"] for k in range(1, self.model.nq + 1)]
+
+    @property
+    def v(self) -> list[Polynomial]:
+        """A symbol for each rate."""
+        return [self.ring[f"v_{k}"] for k in range(1, self.model.nv + 1)]
+
+    @property
+    def a(self) -> list[Polynomial]:
+        """A symbol for each acceleration."""
+        return [self.ring[f"a_{k}"] for k in range(1, self.model.nv + 1)]
+
+    @property
+    def gravity(self) -> Vector:
+        """The gravity field in the base frame."""
+        return self._vector("gravity", (), self.model.gravity)
+
+    @property
+    def payloads(self) -> list[Payload]:
+        """What the robot exerts on its surroundings."""
+        if self.payload_link is None:
+            return []
+        force, moment = (self._vector(kind, (), (0.0, 0.0, 0.0)) for kind in ("force", "moment"))
+        return [Payload(self.payload_link, force, moment)]
+
+    def bodies(self) -> list[Body]:
+        """The links with their joints, as the specification takes them."""
+        return [self._body(i, *pair) for i, pair in enumerate(zip(self.model.joints, self.model.links, strict=True))]
+
+    def sincos(self, angle: Scalar) -> tuple[Polynomial, Polynomial]:
+        """The symbols for sine and cosine of a joint's angle."""
+        suffix = self._angles[str(self.ring.lift(angle))]
+        return self.ring[f"s_{suffix}"], self.ring[f"c_{suffix}"]
+
+    def sign(self, rate: Scalar) -> Scalar:
+        """The symbol for the sign of a rate, or of a multiple of one; 0 for no rate."""
+        for ((name, _),), multiple in self.ring.terms(rate).items():
+            sign = self.ring["sign_" + name.removeprefix("v_")]
+            return sign if multiple > 0 else -sign
+        return 0
+
+    def _body(self, i: int, joint: Joint, link: Link) -> Body:
+        return Body(
+            type=joint.type,
+            axis=Vector.of(joint.axis, exact),
+            R=Matrix.of(joint.R, self._direction),
+            p=self._vector("origin", (i,), joint.p),
+            M=self._number(("mass", i), link.mass),
+            r_C=self._vector("com", (i,), link.com),
+            I=Matrix(
+                tuple(self._vector("inertia", (i, x), row) for x, row in enumerate(link.inertia))  # type: ignore[arg-type]
+            ),
+        )
+
+    def _vector(self, kind: str, place: tuple[int, ...], values: Iterable[float]) -> Vector:
+        return Vector(*(self._number((kind, *place, x), float(value)) for x, value in enumerate(values)))
+
+    def _number(self, slot: Slot, value: float) -> Scalar:
+        if slot in self.letters.slots:
+            return self.ring.polynomial(self.letters.slots[slot])
+        return exact(value) if value else 0
+
+    def _direction(self, value: float) -> Scalar:
+        """An entry of a rotation: 0, 1 or -1 where it is so within the rounding of the sines that made it."""
+        near = RIGHT_ANGLE_ERROR if self.right_angles else ROTATION_ERROR
+        return round(value) if abs(value - round(value)) <= near else exact(value)
+
+    @cached_property
+    def _angles(self) -> dict[str, str]:
+        """The suffix of the sine and cosine of each angle, by the angle's polynomial."""
+        return {
+            str(self.ring[f"q_{angle.place}"] * exact(angle.multiplier) + exact(angle.offset)): angle.suffix
+            for angle in angles(self.model)
+        }
+
+
+def almost_right_angles(model: Model) -> int:
+    """How many entries of the robot's rotations are near 0, 1 or -1 and are not so by rounding alone."""
+    errors = [abs(float(value) - round(value)) for joint in model.joints for value in joint.R.ravel()]
+    return sum(ROTATION_ERROR < error <= RIGHT_ANGLE_ERROR for error in errors)
+
+
+def parameter(slot: Slot, name: str, latex: str) -> Symbol:
+    """The symbol for a number of the robot."""
+    kind = str(slot[0])
+    role = {"gravity": Role.GRAVITY, "force": Role.PAYLOAD, "moment": Role.PAYLOAD}.get(kind, Role.PARAMETER)
+    return Symbol(name, latex, role, SLOT_DIMENSION[kind])
+
+
+def value_of_slot(model: Model, slot: Slot) -> float:
+    """The number that a robot has in a slot; 0 for the payload, which it has none of."""
+    kind, *place = slot
+    i = [int(x) for x in place]
+    if kind == "mass":
+        return model.links[i[0]].mass
+    if kind == "com":
+        return float(model.links[i[0]].com[i[1]])
+    if kind == "inertia":
+        return float(model.links[i[0]].inertia[i[1], i[2]])
+    if kind == "origin":
+        return float(model.joints[i[0]].p[i[1]])
+    return float(model.gravity[i[0]]) if kind == "gravity" else 0.0
+
+
+def letters_of(model: Model, named: Iterable[Named]) -> Letters:
+    """The letters that stand each for one number of a robot, in one place or in several.
+
+    Args:
+        model: the robot.
+        named: for each letter its symbol, its sign (1, or -1 where it stands for minus the number), and the slots.
+    """
+    symbols: list[Symbol] = []
+    slots: dict[Slot, Terms] = {}
+    values: dict[str, float] = {}
+    for symbol, sign, places in named:
+        symbols.append(symbol)
+        values[symbol.name] = sign * value_of_slot(model, places[0])
+        for slot in places:
+            slots[slot] = {((symbol.name, 1),): Fraction(sign)}
+    return Letters(tuple(symbols), slots, values)
+
+
+def default_letters(model: Model, payload_link: int | None = None) -> Letters:
+    """Letters for a robot's numbers that are not zero, after the paper's: M, r_C, J*, and p for the joints' origins.
+
+    The payload is named after its link. J_xy, J_xz, J_yz are minus the matrix elements, as the paper has them.
+    """
+    named = [*_link_letters(model), *_gravity_letters()]
+    used = [letter for letter in named if value_of_slot(model, letter[2][0])]
+    return letters_of(model, [*used, *_payload_letters(payload_link)])
+
+
+def payload_letters(model: Model, payload_link: int | None) -> Letters:
+    """Letters for the payload alone: the robot's own numbers stay numbers."""
+    return letters_of(model, _payload_letters(payload_link))
+
+
+def _link_letters(model: Model) -> Iterator[Named]:
+    for i in range(len(model.links)):
+        link, up = i + 1, f"{{}}^{index(i + 1)}"
+        for x, axis in enumerate(AXES):
+            yield _letter((("origin", i, x),), f"p_{link}{axis}", f"p_{{{link}{axis}}}")
+        yield _letter((("mass", i),), f"M_{link}", f"M_{index(link)}")
+        for x, axis in enumerate(AXES):
+            yield _letter((("com", i, x),), f"r_C{link}{axis}", f"{up}r_{{C_{{{link}{axis}}}}}")
+        for x, axis in enumerate(AXES):
+            yield _letter((("inertia", i, x, x),), f"J_{link}{axis}", f"{up}J_{axis}^*")
+        for x, y in ((0, 1), (0, 2), (1, 2)):
+            pair = AXES[x] + AXES[y]
+            places: tuple[Slot, ...] = (("inertia", i, x, y), ("inertia", i, y, x))
+            yield _letter(places, f"J_{link}{pair}", f"{up}J_{{{pair}}}^*", -1)
+
+
+def _gravity_letters() -> Iterator[Named]:
+    for x, axis in enumerate(AXES):
+        letter = "g" if axis == "z" else f"g_{axis}"
+        yield _letter((("gravity", x),), letter, letter, -1)
+
+
+def _payload_letters(link: int | None) -> Iterator[Named]:
+    if link is None:
+        return
+    up = f"{{}}^{index(link + 1)}"
+    for kind, letter in (("force", "f"), ("moment", "n")):
+        for x, axis in enumerate(AXES):
+            yield _letter(((kind, x),), f"{letter}_tool_{axis}", rf"{up}{letter}_{{\mathrm{{tool}},{axis}}}")
+
+
+def _letter(slots: tuple[Slot, ...], identifier: str, latex: str, sign: int = 1) -> Named:
+    return parameter(slots[0], identifier, latex), sign, slots

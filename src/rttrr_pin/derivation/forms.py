@@ -1,0 +1,185 @@
+"""Derive quantities of a robot in symbols: what is written out, and what is written step by step."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import chain
+from typing import Protocol
+
+from rttrr_pin.core.algebra import Scalar, Vector
+from rttrr_pin.core.model import Model
+from rttrr_pin.derivation.chain import Letters, SymbolicRobot, default_letters
+from rttrr_pin.derivation.derivation import TooLongError, closed_forms
+from rttrr_pin.derivation.model_terms import model_terms
+from rttrr_pin.derivation.quantities import DEFAULT, SUBJECTS, Extent, Index, indices
+from rttrr_pin.derivation.ring import Ring
+from rttrr_pin.derivation.stepwise import Step, Stepwise, needed
+from rttrr_pin.derivation.symbols import Symbol, Terms
+from rttrr_pin.errors import InputError, UnknownNameError
+
+FORMS = ("auto", "expanded", "stepwise")
+
+MOST_TERMS = 10_000
+"""In all that was asked for: more than that nobody reads, and `auto` names steps instead."""
+
+
+class HasModel(Protocol):
+    """A robot as a user holds it."""
+
+    model: Model
+
+
+@dataclass(frozen=True)
+class Derived:
+    """One quantity.
+
+    Attributes:
+        name: as in `SUBJECTS`.
+        shape: of its array for one state.
+        terms: of each entry, by its index from 0.
+    """
+
+    name: str
+    shape: tuple[int, ...]
+    terms: Mapping[Index, Terms]
+
+
+@dataclass(frozen=True)
+class Derivation:
+    """Quantities of a robot as polynomials.
+
+    Attributes:
+        robot: the robot in symbols.
+        form: "expanded" or "stepwise".
+        reason: why this form, in words.
+        steps: what is named on the way, each in letters and earlier names; none in expanded form.
+        quantities: by name.
+    """
+
+    robot: SymbolicRobot
+    form: str
+    reason: str
+    steps: tuple[Step, ...]
+    quantities: Mapping[str, Derived]
+
+    @property
+    def symbols(self) -> dict[str, Symbol]:
+        """Every symbol that may occur, by name, in a fixed order."""
+        given = (*self.robot.motion, *self.robot.letters.symbols, *(step.symbol for step in self.steps))
+        return {symbol.name: symbol for symbol in given}
+
+    @property
+    def ring(self) -> Ring:
+        """The polynomials in these symbols."""
+        return Ring(self.symbols.values())
+
+    def count(self) -> int:
+        """How many terms there are in all."""
+        return sum(map(len, self.all_terms()))
+
+    def all_terms(self) -> Iterable[Terms]:
+        """Every polynomial: of the steps, then of the entries."""
+        yield from (step.terms for step in self.steps)
+        for derived in self.quantities.values():
+            yield from derived.terms.values()
+
+
+def derive(
+    robot: HasModel | Model,
+    quantities: Sequence[str] = DEFAULT,
+    form: str = "auto",
+    letters: Letters | None = None,
+    payload_link: int | None = None,
+    right_angles: bool = False,
+) -> Derivation:
+    """Derive quantities of a robot in symbols, by the recursion of `newton_euler` over polynomials.
+
+    Args:
+        robot: the robot, or its model.
+        quantities: names of `SUBJECTS`: v_dot_C, F, N, f, n, tau, M, C, g.
+        form: "expanded" writes each entry in letters alone; "stepwise" names the vectors that the recursion finishes on
+            each link, for robots whose expanded form nobody could read; "auto" expands up to `MOST_TERMS` terms.
+        letters: what stands for the robot's numbers; None names each that is not zero. `Letters()` keeps the numbers.
+        payload_link: index of the link that the payload acts at; None: there is none, or, where letters are None, the
+            only link that carries no other.
+        right_angles: whether rotations within 1e-4 of right angles are read as such.
+
+    Returns:
+        Polynomials in the letters, coordinates, rates, accelerations, sines and cosines, in SI units.
+
+    Raises:
+        UnknownNameError: there is no such quantity or form.
+        InputError: no quantity is asked for.
+    """
+    model = robot if isinstance(robot, Model) else robot.model
+    for name in quantities:
+        if name not in SUBJECTS:
+            raise UnknownNameError("quantity", name, SUBJECTS)
+    if form not in FORMS:
+        raise UnknownNameError("form", form, FORMS)
+    if not quantities:
+        raise InputError(f"no quantity is asked for: name some of {', '.join(SUBJECTS)}")
+    wanted = list(dict.fromkeys(quantities))
+    if letters is None:
+        payload_link = only_leaf(model) if payload_link is None else payload_link
+        letters = default_letters(model, payload_link)
+    symbolic = SymbolicRobot(model, letters, payload_link, right_angles)
+    if form == "stepwise":
+        return _stepwise(symbolic, wanted, "as asked for")
+    if form == "expanded":
+        return _expanded(symbolic, wanted, None)
+    try:
+        return _expanded(symbolic, wanted, MOST_TERMS)
+    except TooLongError:
+        return _stepwise(symbolic, wanted, f"written out it would have more than {MOST_TERMS:,} terms")
+
+
+def only_leaf(model: Model) -> int | None:
+    """The link that carries no other, where there is exactly one."""
+    leaves = model.leaves()
+    return leaves[0] if len(leaves) == 1 else None
+
+
+def _expanded(robot: SymbolicRobot, quantities: Sequence[str], most_terms: int | None) -> Derivation:
+    ring, forms = robot.ring, closed_forms(robot, most_terms)
+    parts = model_terms(forms) if {"M", "C", "g"} & set(quantities) else None
+    found: dict[str, Sequence[Scalar]] = {}
+    for name in quantities:
+        rows = getattr(forms if name in vars(forms) else parts, name)
+        found[name] = rows if SUBJECTS[name].extent is Extent.JOINTS else [x for row in rows for x in row]
+    derived = {name: _derived(robot.model, name, map(ring.terms, entries)) for name, entries in found.items()}
+    result = Derivation(robot, "expanded", "as asked for", (), derived)
+    if most_terms is None:
+        return result
+    if result.count() > most_terms:
+        raise TooLongError
+    return replace(result, reason=f"up to {most_terms:,} terms in all are written out")
+
+
+def _stepwise(robot: SymbolicRobot, quantities: Sequence[str], reason: str) -> Derivation:
+    runs = Stepwise(robot)
+    motion = runs.motion()
+    made: dict[str, Callable[[], Iterable[Terms]]] = {
+        "v_dot_C": lambda: _flat(runs, runs.accelerations()),
+        "F": lambda: _flat(runs, motion.F),
+        "N": lambda: _flat(runs, motion.N),
+        "f": lambda: _flat(runs, motion.f),
+        "n": lambda: _flat(runs, motion.n),
+        "tau": lambda: map(runs.terms, motion.tau),
+        "M": lambda: chain.from_iterable(runs.mass_matrix()),
+        "C": lambda: chain.from_iterable(runs.coriolis()),
+        "g": runs.gravity,
+    }
+    derived = {name: _derived(robot.model, name, made[name]()) for name in quantities}
+    results = [terms for quantity in derived.values() for terms in quantity.terms.values()]
+    return Derivation(robot, "stepwise", reason, tuple(needed(runs.steps.values(), results)), derived)
+
+
+def _derived(model: Model, name: str, terms: Iterable[Terms]) -> Derived:
+    shape = SUBJECTS[name].extent.shape(model)
+    return Derived(name, shape, dict(zip(indices(shape), terms, strict=True)))
+
+
+def _flat(runs: Stepwise, vectors: Iterable[Vector]) -> Iterator[Terms]:
+    return (runs.terms(component) for vector in vectors for component in vector)

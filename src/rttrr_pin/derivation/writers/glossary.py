@@ -1,0 +1,151 @@
+"""What each symbol of a closed form means, in words, with its unit and its value."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from fractions import Fraction
+
+from rttrr_pin.core.model import Model
+from rttrr_pin.derivation import Derivation, Symbol
+from rttrr_pin.derivation.chain import AXES, Slot
+from rttrr_pin.derivation.motion import angle_places, angles
+from rttrr_pin.derivation.symbols import ACCELERATION, FORCE, INERTIA, LENGTH, MASS, MOMENT, NUMBER, Dimension, Role
+from rttrr_pin.derivation.writers.wording import plain
+
+UNITS: dict[Dimension, str] = {
+    NUMBER: "1",
+    LENGTH: "m",
+    MASS: "kg",
+    INERTIA: "kg m^2",
+    ACCELERATION: "m/s^2",
+    FORCE: "N",
+    MOMENT: "N m",
+    Dimension(time=-1): "rad/s",
+    Dimension(time=-2): "rad/s^2",
+    Dimension(length=1, time=-1): "m/s",
+}
+"""What people write for a dimension."""
+
+
+MOVING = (Role.COORDINATE, Role.RATE, Role.ACCELERATION, Role.SIGN)
+"""What the table begins with."""
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """A row of the table of symbols.
+
+    Attributes:
+        symbol: the symbol.
+        meaning: what it stands for.
+        unit: in which it is.
+        value: as the robot has it; None where it is given with the motion.
+    """
+
+    symbol: Symbol
+    meaning: str
+    unit: str
+    value: float | None = None
+
+
+def glossary(derivation: Derivation) -> list[Entry]:
+    """The symbols that occur, but for sines, cosines and steps."""
+    model = derivation.robot.model
+    used = {name for terms in derivation.all_terms() for factors in terms for name, _ in factors}
+    used |= {f"q_{angle.place}" for angle in angles(model) if {f"s_{angle.suffix}", f"c_{angle.suffix}"} & used}
+    moving = [symbol for role in MOVING for symbol in derivation.robot.motion if symbol.role is role]
+    entries = [_of_motion(model, symbol) for symbol in moving]
+    entries += [x for x in following_angles(model) if {x.symbol.name, "c" + x.symbol.name[1:]} & used]
+    return [entry for entry in [*entries, *parameters(derivation, payload=True)] if entry.symbol.name in used]
+
+
+def parameters(derivation: Derivation, payload: bool = False) -> Iterator[Entry]:
+    """The letters that stand for the robot's numbers; on request those of the payload too."""
+    letters, model = derivation.robot.letters, derivation.robot.model
+    for symbol in letters.symbols:
+        given = symbol.role is Role.PAYLOAD
+        if given and not payload:
+            continue
+        meanings: dict[str, None] = {}
+        for slot, terms in letters.slots.items():
+            sign = terms.get(((symbol.name, 1),), Fraction(0))
+            if sign:
+                minus = "minus " if sign < 0 and slot[0] != "gravity" else ""
+                meanings[minus + _meaning(model, slot, derivation)] = None
+        yield Entry(symbol, ", ".join(meanings), unit(symbol), None if given else letters.values[symbol.name])
+
+
+def payload_places(derivation: Derivation) -> dict[str, tuple[int, int]]:
+    """The place in (f_x, f_y, f_z, n_x, n_y, n_z), from 0, of each letter of the payload, and its sign."""
+    found = {}
+    for slot, terms in derivation.robot.letters.slots.items():
+        if slot[0] in ("force", "moment"):
+            ((((name, _),), sign),) = terms.items()
+            found[name] = (int(slot[1]) + (3 if slot[0] == "moment" else 0), 1 if sign > 0 else -1)
+    return found
+
+
+def following_angles(model: Model) -> list[Entry]:
+    """The angles of joints that follow others, by their sine."""
+    return [
+        Entry(
+            Symbol(f"s_{angle.suffix}", rf"\varphi_{{{angle.suffix[1:]}}}", Role.SINE),
+            f"angle of {plain(model.joints[int(angle.suffix[1:]) - 1].name)}: "
+            f"{angle.multiplier!r} times coordinate {angle.place} plus {angle.offset!r}",
+            "rad",
+        )
+        for angle in angles(model)
+        if angle.suffix.startswith("j")
+    ]
+
+
+def unit(symbol: Symbol) -> str:
+    """The unit of a symbol."""
+    return UNITS.get(symbol.dimension, str(symbol.dimension))
+
+
+def axis_units(model: Model) -> tuple[list[str], list[str]]:
+    """Units of the entries of q, and of those of v; accelerations are per second more."""
+    places = set(angle_places(model))
+    q = ["rad" if k in places else "" for k in range(1, model.nq + 1)]
+    slots = [slot for joint in model.moving for slot in joint.type.q_slots]
+    q = [u or ("1" if slot.startswith("q") else "m") for u, slot in zip(q, slots, strict=True)]
+    rotations = [rotation for joint in model.moving for rotation in joint.type.rotations]
+    return q, ["rad/s" if rotation else "m/s" for rotation in rotations]
+
+
+def labelled(names: Sequence[str], units: Sequence[str]) -> str:
+    """Names with their units, in a row."""
+    return ", ".join(f"{name} [{unit}]" for name, unit in zip(names, units, strict=True))
+
+
+def _of_motion(model: Model, symbol: Symbol) -> Entry:
+    names = model.q_names if symbol.role is Role.COORDINATE else model.v_names
+    of = plain(names[symbol.index - 1])
+    if symbol.role is Role.COORDINATE:
+        return Entry(symbol, f"coordinate of {of}", axis_units(model)[0][symbol.index - 1])
+    word = {Role.RATE: "rate", Role.ACCELERATION: "acceleration", Role.SIGN: "sign of the rate"}[symbol.role]
+    return Entry(symbol, f"{word} of {of}", unit(symbol))
+
+
+def _meaning(model: Model, slot: Slot, derivation: Derivation) -> str:
+    """A number of a robot in words."""
+    kind, *place = slot
+    i = [int(x) for x in place]
+    axes = "".join(AXES[x] for x in sorted(i[1:]))
+    if kind in ("force", "moment"):
+        link = derivation.robot.payload_link or 0
+        return f"payload: {AXES[i[0]]} of the {kind} that {plain(model.links[link].name)} exerts on its surroundings"
+    if kind == "gravity":
+        return f"gravity against the base's {AXES[i[0]]} axis"
+    if kind == "origin":
+        parent = model.joints[i[0]].parent
+        on = model.links[parent] if parent >= 0 else model.root
+        return f"{axes} of the origin of {plain(model.joints[i[0]].name)} on {plain(on.name)}"
+    link_name = plain(model.links[i[0]].name)
+    if kind == "mass":
+        return f"mass of {link_name}"
+    if kind == "com":
+        return f"{axes} of the centre of mass of {link_name}"
+    return f"i{axes} of the inertia tensor of {link_name} about its centre of mass"

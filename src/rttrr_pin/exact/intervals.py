@@ -1,0 +1,46 @@
+"""The ball: a number known to lie between two others, by python-flint's arb; the specification runs on it.
+
+Every operation encloses the exact result, so what comes out encloses the true value: proof, not evidence.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from fractions import Fraction
+
+from flint import arb, ctx, fmpq
+
+from rttrr_pin.core.algebra import Scalar
+from rttrr_pin.core.scalars import Arithmetic
+
+
+@contextmanager
+def precision(bits: int) -> Iterator[None]:
+    """Compute balls to so many bits."""
+    before = ctx.prec
+    ctx.prec = bits
+    try:
+        yield
+    finally:
+        ctx.prec = before
+
+
+def ball(value: float | Fraction) -> arb:
+    """The ball of a float or a fraction: exact, or rounded outwards to the precision in force."""
+    if isinstance(value, Fraction):
+        return arb(fmpq(value.numerator, value.denominator))
+    return arb(float(value))
+
+
+def _sincos(x: Scalar) -> tuple[arb, arb]:
+    sine, cosine = arb(x).sin_cos()
+    return sine, cosine
+
+
+def _sign(x: Scalar) -> arb:
+    return arb(x).sgn()
+
+
+BALL = Arithmetic(number=lambda value, error: ball(value), column=lambda x: ball(float(x)), sincos=_sincos, sign=_sign)
+"""Balls as a kind of scalar: the model's numbers are the doubles that it holds."""

@@ -1,0 +1,191 @@
+"""The (value, error bound) scalar: what rounding can have done to each result, state by state.
+
+Run on this scalar, the specification computes the same values by the same operations as on floats, and beside each a
+running error bound (Wilkinson; Higham, "Accuracy and Stability of Numerical Algorithms", section 3.3). With
+|x - x_true| <= b_x, |y - y_true| <= b_y and u the unit roundoff:
+
+    z = fl(x + y):  |z - z_true| <= b_x + b_y + u |z|
+    z = fl(x y):    |z - z_true| <= |x| b_y + |y| b_x + b_x b_y + u |z|
+
+The bounds are float64 too. Their own rounding is covered by one factor at the end (`SLACK`): every bound is a sum of
+products of non-negative numbers, so it has a relative error of at most its depth times u, below 1e-11 for any robot
+that fits in memory. Underflow is not covered; it needs numbers below 1e-290.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.core.algebra import Scalar, Vector
+from rttrr_pin.core.dynamics import dynamics
+from rttrr_pin.core.joint import JointType
+from rttrr_pin.core.model import Model
+from rttrr_pin.core.payload import Load, payloads_of
+from rttrr_pin.core.scalars import SINE_ULPS, SLACK, UNIT_ROUNDOFF, Arithmetic, columns
+from rttrr_pin.core.wrench import LINK_QUANTITIES, LinkWrenches
+
+Array = NDArray[np.float64]
+Real: TypeAlias = Any  # float | Array: what NumPy's stubs cannot combine without casts
+
+PLAIN = (int, float)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Bounded:
+    """A computed value and a bound on its distance from the true one.
+
+    The only plain numbers that it meets are small integers (0, 1, -1, 2) and powers of two, which are exact, also among
+    themselves. What else it meets is asked to take the operation over, as dual numbers do.
+
+    Attributes:
+        value: as floating-point arithmetic gives it.
+        bound: at least |value - true value|.
+    """
+
+    value: Real
+    bound: Real
+
+    def __add__(self, other: Any) -> Bounded:
+        if isinstance(other, Bounded):
+            value = self.value + other.value
+            return Bounded(value, self.bound + other.bound + UNIT_ROUNDOFF * abs(value))
+        if not isinstance(other, PLAIN):
+            return NotImplemented
+        if other == 0:
+            return self
+        value = self.value + other
+        return Bounded(value, self.bound + UNIT_ROUNDOFF * abs(value))
+
+    __radd__ = __add__
+
+    def __neg__(self) -> Bounded:
+        return Bounded(-self.value, self.bound)
+
+    def __sub__(self, other: Any) -> Bounded:
+        return self.__add__(-other)
+
+    def __rsub__(self, other: Any) -> Bounded:
+        return (-self).__add__(other)
+
+    def __mul__(self, other: Any) -> Bounded | int:
+        if isinstance(other, Bounded):
+            value = self.value * other.value
+            inherited = _inherited(self, other)
+            return Bounded(value, inherited + UNIT_ROUNDOFF * abs(value))
+        if not isinstance(other, PLAIN):
+            return NotImplemented
+        if other == 0:
+            return 0
+        if other in (1, -1):
+            return self if other == 1 else -self
+        value = self.value * other
+        return Bounded(value, self.bound * abs(other) + UNIT_ROUNDOFF * abs(value))
+
+    __rmul__ = __mul__
+
+
+def _inherited(x: Bounded, y: Bounded) -> Real:
+    """|x| b_y + |y| b_x + b_x b_y; numbers of the model come without error, which saves most of it."""
+    if isinstance(y.bound, float) and y.bound == 0.0:
+        return x.bound * abs(y.value)
+    if isinstance(x.bound, float) and x.bound == 0.0:
+        return y.bound * abs(x.value)
+    return abs(x.value) * y.bound + (abs(y.value) + y.bound) * x.bound
+
+
+def _number(value: float, error: float) -> Scalar:
+    """A number of the model; an exact 0, 1 or -1 stays a plain integer, so that products with it are exact."""
+    if error == 0.0 and value in (0.0, 1.0, -1.0):
+        return int(value)
+    return Bounded(value, error)
+
+
+def _sincos(q: Bounded | int) -> tuple[Bounded, Bounded]:
+    """Sine and cosine have slopes of at most one, so the bound of q carries over; what stands still may be a number."""
+    if not isinstance(q, Bounded):
+        q = Bounded(float(q), 0.0)
+    x = float(q.value) if isinstance(q.value, float) else q.value
+    s, c = np.sin(x), np.cos(x)
+    ulps = 2 * SINE_ULPS * UNIT_ROUNDOFF
+    return Bounded(s, q.bound + ulps * abs(s)), Bounded(c, q.bound + ulps * abs(c))
+
+
+def _sign(x: Bounded | int) -> Bounded | int:
+    """Of rates, whose sign is that of an exact double; a rate of 0 may be the plain number."""
+    return Bounded(np.sign(x.value), 0.0) if isinstance(x, Bounded) else x
+
+
+BOUNDED = Arithmetic(
+    number=_number,
+    column=lambda values: Bounded(values, 0.0),
+    sincos=_sincos,
+    sign=_sign,
+)
+
+
+def coordinate_scalars(model: Model, q: Array) -> list[Bounded]:
+    """Coordinates as scalars: the doubles are exact, but for quaternions, which no doubles hold at unit length.
+
+    What is meant by s = (x, y, z, w) is s / |s|, which differs by | |s| - 1 | <= | |s|^2 - 1 | of each component; the
+    square is computed here within 4 u.
+
+    Args:
+        model: the robot.
+        q: coordinates, (N, nq) [rad or m].
+    """
+    scalars = [Bounded(column, 0.0) for column in columns(q)]
+    at = 0
+    for joint in model.moving:
+        if joint.type is JointType.FLOATING:
+            quaternion = scalars[at + 3 : at + 7]
+            defect = abs(sum(c.value * c.value for c in quaternion) - 1.0) + 8 * UNIT_ROUNDOFF
+            scalars[at + 3 : at + 7] = [Bounded(c.value, abs(c.value) * defect) for c in quaternion]
+        at += joint.nq
+    return scalars
+
+
+def bounded_dynamics(
+    model: Model, q: Array, v: Array, a: Array, loads: Sequence[Load] = ()
+) -> tuple[LinkWrenches, LinkWrenches]:
+    """Inverse dynamics of a batch, and a bound on the rounding error of each number.
+
+    Args:
+        model: the robot.
+        q: coordinates, (N, nq) [rad or m]; the doubles are taken as exact, quaternions as what they are of unit length.
+        v: rates, (N, nv).
+        a: accelerations, (N, nv).
+        loads: payloads.
+
+    Returns:
+        The values, the same bits as the readable recursion gives, and the bounds, in arrays of the same shapes:
+        the true value lies within bound of value.
+    """
+    rows = len(q)
+    v_, a_ = ([Bounded(column, 0.0) for column in columns(x)] for x in (v, a))
+    result = dynamics(model, BOUNDED, coordinate_scalars(model, q), v_, a_, payloads_of(loads, BOUNDED))
+    values, bounds = {}, {}
+    for key in ("tau", "tau_joint"):
+        values[key], bounds[key] = values_and_bounds(getattr(result, key), rows)
+    for key in LINK_QUANTITIES:
+        vectors: list[Vector] = getattr(result, key)
+        value, bound = values_and_bounds([scalar for vector in vectors for scalar in vector], rows)
+        values[key], bounds[key] = value.reshape(rows, -1, 3), bound.reshape(rows, -1, 3)
+    links, joints = model.link_names, model.v_names
+    return LinkWrenches.of(values, links, joints), LinkWrenches.of(bounds, links, joints)
+
+
+def values_and_bounds(scalars: Sequence[Scalar], rows: int) -> tuple[Array, Array]:
+    """Values and bounds of scalars, side by side."""
+    values, bounds = np.empty((rows, len(scalars))), np.zeros((rows, len(scalars)))
+    for column, scalar in enumerate(scalars):
+        if isinstance(scalar, Bounded):
+            values[:, column] = scalar.value
+            bounds[:, column] = scalar.bound * SLACK
+        else:
+            values[:, column] = scalar
+    return values, bounds

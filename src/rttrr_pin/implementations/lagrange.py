@@ -1,0 +1,129 @@
+"""Lagrange's equations as the oracle: the driving forces from derivatives of T and V, by dual numbers.
+
+For rate j, with p_j = dT/dv_j the momentum that belongs to it and d_j the derivative by the configuration in the
+direction in which rate j takes it (the rates held):
+
+    tau_j = d/dt p_j - d_j (T - V) + turning_j + d(P_payload + P_drives)/dv_j
+
+Of a joint whose rates are derivatives of its coordinates, `turning` is zero and this is Lagrange's equation. A planar
+or floating joint has a twist (v, w) in {i} as its rates, which are no derivatives of coordinates (quasi-velocities);
+there the Boltzmann-Hamel equations apply, for twists those of Kirchhoff:
+
+    turning = w x P for the force,   w x L + v x P for the moment
+
+Payload and drives enter by virtual power: the derivative, by rate j, of the power of the forces that they are. A joint
+that follows another has the followed joint's rate times its multiplier, which the derivatives see.
+
+Source: Greenwood, "Advanced Dynamics", 2003, sections 2.2 and 4.1 (Boltzmann-Hamel); Lamb, "Hydrodynamics", article
+124.
+
+It shares nothing with the recursion but the motion of single joints (`joint_motion`): no acceleration of a link, no
+force on one. So it gives tau alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from importlib import metadata
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.core.algebra import Scalar, Vector
+from rttrr_pin.core.dual import Dual, part_of, value_of
+from rttrr_pin.core.dynamics import bodies, joint_states
+from rttrr_pin.core.energy import drive_power, gyroscopic, kinetic_energy, moving_links, payload_power, potential_energy
+from rttrr_pin.core.joint_motion import Body
+from rttrr_pin.core.model import Model
+from rttrr_pin.core.payload import Load, payloads_of
+from rttrr_pin.core.scalars import Arithmetic, columns
+from rttrr_pin.core.tangent import TIME, in_time, over_duals, tangent
+from rttrr_pin.core.wrench import LinkWrenches
+from rttrr_pin.exact.rounding import BOUNDED, Bounded, coordinate_scalars, values_and_bounds
+from rttrr_pin.implementations import Evaluation
+
+if TYPE_CHECKING:
+    from rttrr_pin.core.newton_euler import Payload
+
+Array = NDArray[np.float64]
+
+
+class LagrangeOracle:
+    """Lagrange's equations on our own model, run on (value, bound) scalars: its rounding comes with it."""
+
+    name = "lagrange"
+    version: str = metadata.version("rttrr-pin")
+    quantities: tuple[str, ...] = ("tau",)
+
+    def __init__(self, model: Model) -> None:
+        self.model = model
+
+    def evaluate(self, q: Array, v: Array, a: Array, loads: Sequence[Load] = ()) -> Evaluation:
+        """The driving forces of a batch, and a bound on their rounding.
+
+        Args:
+            q: coordinates, (N, nq) [rad or m].
+            v: rates, (N, nv).
+            a: accelerations, (N, nv).
+            loads: payloads.
+        """
+        v_, a_ = ([Bounded(column, 0.0) for column in columns(x)] for x in (v, a))
+        payloads = payloads_of(loads, BOUNDED)
+        tau, tau_joint = lagrange(self.model, BOUNDED, coordinate_scalars(self.model, q), v_, a_, payloads)
+        values, bounds = values_and_bounds(tau, len(q))
+        none = np.empty((len(q), 0, 3))
+        own = values_and_bounds(tau_joint, len(q))[0]
+        wrenches = LinkWrenches(values, none, none, none, none, own, (), self.model.v_names)
+        return Evaluation(wrenches, {"tau": bounds})
+
+
+def lagrange(
+    model: Model,
+    arithmetic: Arithmetic,
+    q: Sequence[Scalar],
+    v: Sequence[Scalar],
+    a: Sequence[Scalar],
+    payloads: Sequence[Payload] = (),
+) -> tuple[list[Scalar], list[Scalar]]:
+    """The driving forces in scalars of any kind, and the part of them that the joints take themselves.
+
+    Args:
+        model: the robot.
+        arithmetic: the kind of scalar.
+        q: a scalar for each coordinate.
+        v: a scalar for each rate.
+        a: a scalar for each acceleration.
+        payloads: what the robot exerts on its surroundings.
+    """
+    links = bodies(model, arithmetic)
+    n = range(model.nv)
+    inner = over_duals(arithmetic)
+    outer = over_duals(inner)
+    q_t, v_t = in_time(model.moving, q, v, a, arithmetic)
+    q_o = [Dual(x, {}) for x in q_t]  # what moves in time, and along each rate
+    v_o = [Dual(x, {j: 1}) for j, x in enumerate(v_t)]
+    moving = moving_links(model, links, q_o, v_o, outer)
+    T = kinetic_energy(links, moving)
+    p = [part_of(T, j) for j in n]
+    p_dot = [part_of(x, TIME) for x in p]
+    slope = _slope(model, links, q, v, arithmetic)
+    turning = gyroscopic(model, v, [value_of(x) for x in p])
+    states = joint_states(model, arithmetic, q, v, a)
+    drives = drive_power(model, arithmetic, states, joint_states(model, outer, q_o, v_o, a))
+    surroundings = payload_power(payloads, moving)
+    tau_joint = [value_of(part_of(drives, j)) for j in n]
+    given = [value_of(part_of(surroundings, j)) for j in n]
+    tau = [p_dot[j] - slope[j] + turning[j] + given[j] + tau_joint[j] for j in n]
+    return tau, tau_joint
+
+
+def _slope(
+    model: Model, links: Sequence[Body], q: Sequence[Scalar], v: Sequence[Scalar], arithmetic: Arithmetic
+) -> list[Scalar]:
+    """d_j (T - V): derivatives by the configuration, along each rate, the rates held."""
+    gravity = Vector.of(model.gravity, lambda value: arithmetic.number(value, 0.0))
+    duals = over_duals(arithmetic)
+    moving = moving_links(model, links, tangent(model.moving, q, arithmetic), v, duals)
+    lagrangian = kinetic_energy(links, moving) - potential_energy(links, moving, gravity)
+    return [part_of(lagrangian, j) for j in range(model.nv)]

@@ -1,0 +1,34 @@
+"""What an oracle built, held against the file: a line for each number that differs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from rttrr_pin.core.scalars import EPS
+
+Array = NDArray[np.float64]
+
+TOLERANCE = 64 * EPS
+"""Relative; merging inertias over fixed joints and turning them by rpy rounds a few times."""
+
+
+def differs(what: str, ours: ArrayLike, theirs: ArrayLike, scale: float = 0.0) -> Iterator[str]:
+    """A line, if two numbers or arrays are apart by more than rounding.
+
+    Args:
+        what: they are, in words.
+        ours: what the file says.
+        theirs: what the oracle has.
+        scale: of what was rounded on the way, where that is larger than the numbers themselves.
+    """
+    x, y = np.asarray(ours, dtype=float), np.asarray(theirs, dtype=float)
+    size = max(float(np.linalg.norm(x)), scale)
+    if x.shape != y.shape or not np.linalg.norm(x - y) <= TOLERANCE * size:
+        yield f"{what}: {_short(y)}, the file says {_short(x)}"
+
+
+def _short(x: Array) -> str:
+    return np.array2string(x, precision=17, separator=", ").replace("\n", "")

@@ -1,0 +1,283 @@
+"""The model that MuJoCo built, link by link, and what in it differs from the file.
+
+MuJoCo's importer reads the file on its own: names, tree, placements, axes, masses, centres of mass and tensors are held
+against ours as it read them. What its compiler would do to them next is kept away:
+
+- Fixed links are fused into what carries them, the root into the world: `fusestatic` is off, and every link is a body.
+- Shapes, meshes and a `<mujoco>` section are left out of the text: dynamics take `<inertial>` alone.
+- A moving body without mass, a tensor that no body has: refused. So it compiles placeholders, and the masses, centres
+  and tensors that it read are written into the compiled model.
+- Tensors are diagonalised by an iteration that stops at 1e-12: here by LAPACK. MuJoCo computes with those axes.
+- Quaternions and axes are divided by their length where that is off by more than 1e-14: here always.
+- `<mimic>` becomes a soft constraint (in older versions nothing): left out, once it is compared. Followers are driven
+  along, as for every oracle.
+- A floating joint must hang on the world: three slides and a ball are the same joint, and may hang anywhere.
+- Before version 3.14 the `rpy` of `<inertial>` is dropped: a tensor that it turns is a difference, and an error.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import mujoco
+import numpy as np
+from lxml import etree
+from numpy.typing import NDArray
+
+from rttrr_pin.core.joint import AXIAL, Joint, JointType
+from rttrr_pin.core.model import Link, Model
+from rttrr_pin.errors import ModelMismatchError, OracleError
+from rttrr_pin.implementations import urdf_of
+from rttrr_pin.implementations.joint_maps import OracleJoint, own_slices
+from rttrr_pin.implementations.model_comparison import differs
+
+Array = NDArray[np.float64]
+
+PREFIX = "link "
+"""Before the name of each link: MuJoCo has a body of its own that is called world."""
+
+END = "."
+"""Behind the name of each joint: MuJoCo appends to those of planar joints, and drops what is called so already."""
+
+DROPPED = ("mujoco", "visual", "collision")
+
+TURNS_TENSORS = tuple(int(part) for part in mujoco.__version__.split(".")[:2]) >= (3, 14)
+"""Whether MuJoCo heeds the rpy of `<inertial>`."""
+
+SLIDE, HINGE, BALL = mujoco.mjtJoint.mjJNT_SLIDE, mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_BALL
+
+MADE_OF = {
+    JointType.REVOLUTE: (HINGE,),
+    JointType.CONTINUOUS: (HINGE,),
+    JointType.PRISMATIC: (SLIDE,),
+    JointType.PLANAR: (SLIDE, SLIDE, HINGE),
+    JointType.FLOATING: (SLIDE, SLIDE, SLIDE, BALL),
+    JointType.FIXED: (),
+}
+"""MuJoCo's joints that make one of ours, in the order in which they move their body."""
+
+PARTS = {JointType.PLANAR: ("_TX", "_TY", "_RZ"), JointType.FIXED: ()}
+"""What MuJoCo appends to the name of a joint that it makes of several, and of one that it does not make."""
+
+
+def build(model: Model) -> Any:
+    """MuJoCo's compiled model: body 1 is the root of the file, then every other link.
+
+    Raises:
+        OracleError: MuJoCo refuses the file.
+        ModelMismatchError: it read something else than we did.
+    """
+    with _without_log():
+        try:
+            spec = mujoco.MjSpec.from_string(_bare(urdf_of(model, "MuJoCo")))
+            bodies = {body.name: body for body in spec.bodies}
+            found = [*_differences(model, bodies), *_mimic_differences(model, spec)]
+            read = {name: _Inertial(body) for name, body in bodies.items() if name.startswith(PREFIX)}
+            if not found:
+                _prepare(spec, model, bodies)
+                compiled = spec.compile()
+        except ValueError as error:
+            raise OracleError(f"MuJoCo refuses the URDF of {model.name!r}: {str(error).strip()}") from error
+    if found:
+        raise ModelMismatchError("MuJoCo", found)
+    for name, inertial in read.items():
+        inertial.write(compiled, compiled.body(name).id)
+    compiled.opt.gravity[:] = model.gravity
+    _complete(compiled)
+    return compiled
+
+
+def mujoco_joints(model: Model, compiled: Any) -> list[OracleJoint]:
+    """The moving joints, in our order."""
+    found = []
+    for joint, link, (own_q, own_v) in zip(model.joints, model.links, own_slices(model), strict=True):
+        if joint.nv:
+            first = compiled.body_jntadr[compiled.body(PREFIX + link.name).id]
+            q, v = int(compiled.jnt_qposadr[first]), int(compiled.jnt_dofadr[first])
+            at_q, at_v = slice(q, q + joint.nq), slice(v, v + joint.nv)
+            found.append(OracleJoint(joint.type, at_q, at_v, own_q, own_v, joint.mimic, joint.drive))
+    return found
+
+
+def rotation_of(quaternion: Any) -> Array:
+    """The rotation matrix of MuJoCo's quaternion (w, x, y, z)."""
+    matrix = np.empty(9)
+    mujoco.mju_quat2Mat(matrix, unit(quaternion))
+    return matrix.reshape(3, 3)
+
+
+def unit(x: Any) -> Array:
+    """Divided by its length."""
+    vector = np.array(x, dtype=float)
+    divided: Array = vector / np.linalg.norm(vector)
+    return divided
+
+
+class _Inertial:
+    """Mass, centre and tensor of a body, in link axes, as MuJoCo read them.
+
+    Attributes:
+        mass: [kg].
+        com: from the link's origin to the centre of mass [m].
+        inertia: about the centre of mass [kg m^2].
+    """
+
+    def __init__(self, body: Any) -> None:
+        self.mass = float(body.mass)
+        self.com: Array = np.nan_to_num(np.array(body.ipos))  # nan: the file has no <inertial>
+        xx, yy, zz, xy, xz, yz = np.nan_to_num(np.array(body.fullinertia))
+        tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        R = rotation_of(body.iquat) if TURNS_TENSORS else np.eye(3)
+        turned = R @ tensor @ R.T
+        self.inertia: Array = (turned + turned.T) / 2
+
+    def write(self, compiled: Any, number: int) -> None:
+        """Into the compiled model."""
+        moments, axes = np.linalg.eigh(self.inertia)
+        if not (self.inertia - np.diag(np.diag(self.inertia))).any():
+            moments, axes = np.diag(self.inertia), np.eye(3)
+        axes[:, 2] *= np.sign(np.linalg.det(axes))
+        quaternion = np.empty(4)
+        mujoco.mju_mat2Quat(quaternion, axes.ravel())
+        compiled.body_mass[number] = self.mass
+        compiled.body_ipos[number] = self.com
+        compiled.body_inertia[number] = moments
+        compiled.body_iquat[number] = unit(quaternion)
+
+
+@contextmanager
+def _without_log() -> Iterator[None]:
+    """MuJoCo's warnings (two limits are equal, ...) go to a file in the current folder unless someone takes them."""
+    before = mujoco.get_mju_user_warning()
+    mujoco.set_mju_user_warning(lambda message: None)
+    try:
+        yield
+    finally:
+        mujoco.set_mju_user_warning(before)
+
+
+def _bare(urdf: str) -> str:
+    """The text without what dynamics do not need, and with the names of links and joints marked."""
+    root = etree.fromstring(urdf.encode(), etree.XMLParser(encoding="utf-8"))
+    for element in list(root.iter(*DROPPED)):
+        element.getparent().remove(element)
+    for link in root.findall("link"):
+        link.set("name", PREFIX + link.get("name", ""))
+    for tag in ("parent", "child"):
+        for end in root.iterfind(f"joint/{tag}"):
+            end.set("link", PREFIX + end.get("link", ""))
+    for element, key in [(x, "name") for x in root.findall("joint")] + [
+        (x, "joint") for x in root.iterfind("joint/mimic")
+    ]:
+        element.set(key, element.get(key, "") + END)
+    text: str = etree.tostring(root, encoding="unicode")
+    return text
+
+
+def _differences(model: Model, bodies: dict[str, Any]) -> Iterator[str]:
+    """One line for each number of MuJoCo's that is not what the file says."""
+    theirs = {name.removeprefix(PREFIX) for name in bodies if name.startswith(PREFIX)}
+    ours = {model.root.name, *model.link_names} if not model.floating else set(model.link_names)
+    if theirs != ours:
+        yield f"links: {', '.join(sorted(theirs))}, the file has {', '.join(sorted(ours))}"
+        return
+    for i, (joint, link) in enumerate(zip(model.joints, model.links, strict=True)):
+        body = bodies[PREFIX + link.name]
+        yield from _inertia_differences(link, _Inertial(body))
+        if not (model.floating and i == 0):
+            yield from _joint_differences(model, joint, body)
+
+
+def _inertia_differences(link: Link, theirs: _Inertial) -> Iterator[str]:
+    here = f"link {link.name!r}"
+    yield from differs(f"{here} mass", link.mass, theirs.mass)
+    if link.mass:
+        yield from differs(f"{here} centre of mass", link.com, theirs.com)
+    yield from differs(f"{here} inertia", link.inertia, theirs.inertia)
+
+
+def _joint_differences(model: Model, joint: Joint, body: Any) -> Iterator[str]:
+    """Placement, kind, axis, damping, friction and range of a joint."""
+    here = f"joint {joint.name!r}"
+    parent = model.links[joint.parent].name if joint.parent >= 0 else model.root.name
+    if body.parent.name != PREFIX + parent:
+        yield f"{here}: hangs on {body.parent.name.removeprefix(PREFIX)!r}, the file says {parent!r}"
+    yield from differs(f"{here} placement R", joint.R, rotation_of(body.quat), 1.0)
+    yield from differs(f"{here} placement p", joint.p, body.pos)
+    made_of = MADE_OF[joint.type] if joint.type is not JointType.FLOATING else (mujoco.mjtJoint.mjJNT_FREE,)
+    kinds, names = tuple(theirs.type for theirs in body.joints), [theirs.name for theirs in body.joints]
+    if names != [joint.name + END + part for part in PARTS.get(joint.type, ("",))]:
+        carried_by = ", ".join(name.replace(END, "") for name in names) or "no joint"
+        yield f"link {body.name.removeprefix(PREFIX)!r}: carried by {carried_by}, the file says {joint.name}"
+    elif kinds != made_of:
+        yield f"{here}: made of {', '.join(map(str, kinds)) or 'none'}, the file says {joint.type}"
+    elif joint.type in AXIAL:
+        (theirs,) = body.joints
+        yield from differs(f"{here} axis", joint.axis, unit(theirs.axis), 1.0)
+        yield from _limit_differences(here, joint, theirs)
+
+
+def _limit_differences(here: str, joint: Joint, theirs: Any) -> Iterator[str]:
+    """Damping and friction, and limits where the file sets them; MuJoCo has none on rates."""
+    limits = joint.limits
+    yield from differs(f"{here} damping", joint.dynamics.damping, np.ravel(theirs.damping)[0])
+    yield from differs(f"{here} friction", joint.dynamics.friction, theirs.frictionloss)
+    compared = [("effort limit", limits.effort, theirs.actfrcrange[1])] if limits.effort > 0.0 else []
+    if joint.type is not JointType.CONTINUOUS:
+        compared += [("lower limit", limits.lower, theirs.range[0]), ("upper limit", limits.upper, theirs.range[1])]
+    for what, ours, number in compared:
+        if np.isfinite(ours):
+            yield from differs(f"{here} {what}", ours, number)
+
+
+def _mimic_differences(model: Model, spec: Any) -> Iterator[str]:
+    """Multiplier and offset of followers, where MuJoCo reads them."""
+    read = {equality.name1.removesuffix(END): equality for equality in spec.equalities}
+    for joint in model.joints:
+        if joint.mimic is not None and not joint.mimic.rounded and joint.name in read:
+            here, theirs = f"joint {joint.name!r} mimic", read[joint.name]
+            leader = model.joints[joint.mimic.joint].name
+            if theirs.name2 != leader + END:
+                yield f"{here}: follows {theirs.name2.removesuffix(END)!r}, the file says {leader!r}"
+            yield from differs(f"{here} multiplier", joint.mimic.multiplier, theirs.data[1])
+            yield from differs(f"{here} offset", joint.mimic.offset, theirs.data[0])
+
+
+def _prepare(spec: Any, model: Model, bodies: dict[str, Any]) -> None:
+    """Settings and placeholders with which the compiler alters nothing."""
+    spec.compiler.fusestatic = False
+    spec.compiler.balanceinertia = False
+    spec.compiler.boundmass = spec.compiler.boundinertia = 0.0
+    spec.compiler.inertiafromgeom = mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_FALSE
+    for equality in list(spec.equalities):
+        spec.delete(equality)
+    for joint, link in zip(model.joints, model.links, strict=True):
+        if joint.type is JointType.FLOATING:
+            _make_floating(bodies[PREFIX + link.name])
+    for body in bodies.values():
+        if body.name.startswith(PREFIX):
+            body.mass, body.inertia, body.fullinertia = 1.0, np.ones(3), np.full(6, np.nan)
+            body.ipos, body.iquat, body.explicitinertial = np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]), True
+            body.quat = unit(body.quat)
+            for theirs in body.joints:
+                theirs.axis = unit(theirs.axis)
+
+
+def _make_floating(body: Any) -> None:
+    """Slides along x, y, z and a ball in place of the free joint, if there is one."""
+    first = body.joints[0] if body.joints else body.add_joint()
+    parts = [first, *(body.add_joint() for _ in range(3))]
+    for part, kind, axis in zip(
+        parts, MADE_OF[JointType.FLOATING], [*np.eye(3), np.array([0.0, 0.0, 1.0])], strict=True
+    ):
+        part.type, part.axis = kind, axis
+
+
+def _complete(compiled: Any) -> None:
+    """What the compiler had worked out from the placeholders: masses of subtrees, frames that are the same."""
+    compiled.body_sameframe[:] = 0
+    compiled.body_subtreemass[:] = compiled.body_mass
+    for number in reversed(range(1, compiled.nbody)):
+        compiled.body_subtreemass[compiled.body_parentid[number]] += compiled.body_subtreemass[number]

@@ -1,0 +1,131 @@
+"""What MuJoCo's formulas round beyond ours.
+
+MuJoCo computes in world axes, about one point C for the whole robot, its centre of mass. Against the recursion in link
+frames three things round that do not occur there:
+
+- Orientations are quaternions, multiplied up from the root. Each level turns by a rounded rotation, and the length is
+  mended only where it is off by more than 1e-15, that is 4.5 eps, which counts twice in the matrix. So vectors that go
+  from link to world and back, and every part that a link adds, are off by some eps for each level above it.
+- Positions are world coordinates, added up from the root. A lever is the difference of two.
+- Velocities, accelerations and momenta are spatial, about C: of a link at a distance rho they contain w rho, w_dot rho,
+  m rho^2 w_dot, v x m v, which cancel in the moment about the link's own origin.
+
+Sizes add up like the terms: outwards for velocities and accelerations, inwards for forces and moments. Levers count
+with all the lengths that they were added up from, and each link's part counts once for each level, and `FIXED` times
+more for what does not grow with the level.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.core.scalars import EPS
+
+Array = NDArray[np.float64]
+
+OPERATIONS = 4
+"""Roundings in eps on the way of each term over one level: a quaternion product, its matrix, a sum."""
+
+FIXED = 2
+"""Levels that stand for what does not grow: lengths mended only beyond 1e-15, inertias turned, the way back."""
+
+
+@dataclass(slots=True)
+class Motion:
+    """Sizes of what moves, by body, (N, bodies) each: terms added up in absolute value.
+
+    Attributes:
+        w: angular velocity.
+        v: linear velocity of the field at C.
+        w_dot: angular acceleration.
+        v_dot: linear acceleration of the field at C.
+        rho: lengths from C and from the world's origin to the body's frame.
+    """
+
+    w: Array
+    v: Array
+    w_dot: Array
+    v_dot: Array
+    rho: Array
+
+
+def rounding(
+    compiled: Any, qvel: Array, qacc: Array, xpos: Array, C: Array, loads: dict[int, Array]
+) -> dict[str, Array]:
+    """The size of terms that cancel, times eps and the operations they go through, by quantity: (N, bodies) each.
+
+    Args:
+        compiled: MuJoCo's model.
+        qvel: rates in MuJoCo's convention, (N, nv).
+        qacc: accelerations in MuJoCo's convention, (N, nv).
+        xpos: origins of the bodies in the world, (N, bodies, 3) [m].
+        C: the point that MuJoCo's spatial vectors are about, (N, 3) [m].
+        loads: by body, the size of force and moment that act on it, (N, 2).
+    """
+    parents = compiled.body_parentid
+    motion = _outwards(compiled, qvel, qacc, xpos, C)
+    w, v, w_dot, v_dot, rho = motion.w, motion.v, motion.w_dot, motion.v_dot, motion.rho
+    mass = np.abs(compiled.body_mass)
+    arm = rho + np.linalg.norm(compiled.body_ipos, axis=1)
+    tensor = np.linalg.norm(compiled.body_inertia, axis=1)
+    turning = w_dot + w**2
+    force = mass * (v_dot + w * v + arm * turning)
+    own_moment = tensor * turning
+    moment = own_moment + mass * (v**2 + arm * (v_dot + 2 * w * v) + arm**2 * turning)
+
+    weight = OPERATIONS * EPS * (_levels(parents) + FIXED)
+    out = {"F": weight * force, "N": weight * own_moment}
+    f, n = weight * force, weight * moment
+    for body, sizes in loads.items():
+        f[:, body] += weight[body] * sizes[:, 0]
+        n[:, body] += weight[body] * (sizes[:, 1] + arm[:, body] * sizes[:, 0])
+    for body in reversed(range(1, len(parents))):
+        f[:, parents[body]] += f[:, body]
+        n[:, parents[body]] += n[:, body]
+    return out | {"f": f, "n": n + rho * f}
+
+
+def _outwards(compiled: Any, qvel: Array, qacc: Array, xpos: Array, C: Array) -> Motion:
+    """Sizes of velocities and accelerations, body by body."""
+    shape = (len(qvel), compiled.nbody)
+    rates, accelerations = (_by_body(compiled, x) for x in (qvel, qacc))
+    motion = Motion(*(np.zeros(shape) for _ in range(5)))
+    motion.v_dot[:, 0] = np.linalg.norm(compiled.opt.gravity)
+    motion.rho[:, 0] = np.linalg.norm(C, axis=1)
+    for body, parent in enumerate(compiled.body_parentid):
+        if body == 0:
+            continue
+        rho = motion.rho[:, parent] + np.linalg.norm(xpos[:, body] - xpos[:, parent], axis=1)
+        (slid, turned), (slid_a, turned_a) = rates[body], accelerations[body]
+        w = motion.w[:, parent] + turned
+        v = motion.v[:, parent] + slid + rho * turned
+        motion.w_dot[:, body] = motion.w_dot[:, parent] + turned_a + w * turned
+        motion.v_dot[:, body] = (
+            motion.v_dot[:, parent] + slid_a + rho * turned_a + w * (slid + rho * turned) + v * turned
+        )
+        motion.w[:, body], motion.v[:, body], motion.rho[:, body] = w, v, rho
+    return motion
+
+
+def _by_body(compiled: Any, x: Array) -> list[tuple[Array, Array]]:
+    """The norms of what slides and of what turns, for each body, (N,) each."""
+    slides = compiled.jnt_type[compiled.dof_jntid] == mujoco.mjtJoint.mjJNT_SLIDE
+    out = []
+    for body in range(compiled.nbody):
+        of_body = compiled.dof_bodyid == body
+        slid, turned = (np.linalg.norm(x[:, of_body & kind], axis=1) for kind in (slides, ~slides))
+        out.append((slid, turned))
+    return out
+
+
+def _levels(parents: Array) -> Array:
+    """How many bodies there are from the world to each one."""
+    levels = np.zeros(len(parents))
+    for body in range(1, len(parents)):
+        levels[body] = levels[parents[body]] + 1
+    return levels

@@ -1,0 +1,94 @@
+"""Our coordinates in Pinocchio's words, and its driving forces in ours.
+
+| joint | our q | Pinocchio's q |
+|---|---|---|
+| continuous | angle | cosine, sine |
+| planar | x, y, theta | x, y, cosine, sine |
+| floating | position, quaternion (x, y, z, w) | the same |
+| one that follows another | none | its own |
+
+Pinocchio's mimic joints raise where the followed joint sorts later. So every joint moves by itself here, followers are
+driven along, and their forces are summed up by virtual work.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.core.joint import JointType
+from rttrr_pin.core.model import Model
+from rttrr_pin.implementations.joint_maps import OracleJoint, friction, own_slices
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class PinJoint(OracleJoint):
+    """A moving joint of ours, where Pinocchio has it.
+
+    Attributes:
+        id: Pinocchio's number of it.
+    """
+
+    id: int
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """A batch in Pinocchio's coordinates: q (N, nq), v and a (N, nv), every joint moving by itself."""
+
+    q: Array
+    v: Array
+    a: Array
+
+
+def pin_joints(model: Model, pin_model: Any) -> list[PinJoint]:
+    """The moving joints, in our order."""
+    found = []
+    for joint, (own_q, own_v) in zip(model.joints, own_slices(model), strict=True):
+        if joint.nv:
+            number = pin_model.getJointId(joint.name)
+            theirs = pin_model.joints[number]
+            q, v = slice(theirs.idx_q, theirs.idx_q + theirs.nq), slice(theirs.idx_v, theirs.idx_v + theirs.nv)
+            found.append(PinJoint(joint.type, q, v, own_q, own_v, joint.mimic, joint.drive, number))
+    return found
+
+
+def expand(joints: Sequence[PinJoint], pin_model: Any, q: Array, v: Array, a: Array) -> Motion:
+    """Our q, v, a as Pinocchio's."""
+    rows = len(q)
+    motion = Motion(np.empty((rows, pin_model.nq)), np.empty((rows, pin_model.nv)), np.empty((rows, pin_model.nv)))
+    for joint in joints:
+        q_, v_, a_ = joint.own(q, v, a)
+        if joint.type in (JointType.CONTINUOUS, JointType.PLANAR):
+            angle = q_[:, -1:]
+            q_ = np.hstack([q_[:, :-1], np.cos(angle), np.sin(angle)])
+        motion.q[:, joint.q], motion.v[:, joint.v], motion.a[:, joint.v] = q_, v_, a_
+    return motion
+
+
+def driving_forces(joints: Sequence[PinJoint], tau: Array, motion: Motion) -> tuple[Array, Array]:
+    """Tau with friction, which `rnea` leaves out (armature is in it), and the part that the joints take themselves."""
+    own = np.zeros_like(tau)
+    total = tau.copy()
+    for joint in joints:
+        v, a = motion.v[:, joint.v], motion.a[:, joint.v]
+        resisting = friction(joint.drive, v)
+        own[:, joint.v] = joint.drive.armature * a + resisting
+        total[:, joint.v] += resisting
+    return total, own
+
+
+def reach(joints: Sequence[PinJoint], pin_model: Any, motion: Motion) -> Array:
+    """At most how far each joint's origin is from that of the joint further in, (N, njoints) [m]."""
+    out = np.tile([np.linalg.norm(x.translation) for x in pin_model.jointPlacements], (len(motion.q), 1))
+    lengths = {JointType.PRISMATIC: 1, JointType.PLANAR: 2, JointType.FLOATING: 3}
+    for joint in joints:
+        moved = motion.q[:, joint.q][:, : lengths.get(joint.type, 0)]
+        out[:, joint.id] += np.linalg.norm(moved, axis=1)
+    return out

@@ -1,0 +1,70 @@
+"""What Pinocchio's formulas round beyond ours.
+
+A difference between two correct programs must be held against the rounding of both. Ours is bounded operation by
+operation; of Pinocchio's we know the formulas. Two things in them round, and do not occur in ours:
+
+- Spatial accelerations and momenta about the joint's origin O contain terms that cancel in the result: w x v_O in
+  `a_gf`, v_O x m v_O and m |c|^2 (|w_dot| + |w|^2) in the moment.
+- Rotations about an axis that is not x, y or z itself, -z for one, come from 1 - cos q, so that even what lies along
+  the axis is rounded when it is carried over the joint. Ours carries it over exactly, and its bound knows.
+
+Both are rounding of terms of known size. Sizes add up like the terms: outwards for velocities and accelerations,
+inwards for forces and moments; each counts with a few eps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.core.scalars import EPS
+from rttrr_pin.implementations.pinocchio_model import PinLink
+
+Array = NDArray[np.float64]
+
+OPERATIONS = 4
+"""Roundings on the way of each term over one joint: a vector product, a sum, a change of frame."""
+
+
+def rounding(pin_model: Any, links: Sequence[PinLink], spatial: Array, reach: Array) -> dict[str, Array]:
+    """The size of terms that cancel, times `OPERATIONS` eps, by quantity: (N, links) each.
+
+    Args:
+        pin_model: Pinocchio's model.
+        links: the links as Pinocchio has them.
+        spatial: data.f, data.v, data.a_gf of each joint, linear before angular, (N, 3, njoints, 6).
+        reach: at most how far a joint's origin is from that of the joint further in, (N, njoints) [m].
+    """
+    v, w = (np.linalg.norm(x, axis=-1) for x in np.split(spatial[:, 1], 2, axis=-1))
+    v_dot, w_dot = (np.linalg.norm(x, axis=-1) for x in np.split(spatial[:, 2], 2, axis=-1))
+    parents = [int(parent) for parent in pin_model.parents]
+    turning = w_dot + w**2
+    acceleration = v_dot + w * v
+    for joint in range(1, len(parents)):
+        turning[:, joint] += turning[:, parents[joint]]
+        acceleration[:, joint] += acceleration[:, parents[joint]] + reach[:, joint] * turning[:, parents[joint]]
+
+    mass = np.array([inertia.mass for inertia in pin_model.inertias])
+    c = np.array([np.linalg.norm(inertia.lever) for inertia in pin_model.inertias])
+    tensor = np.array([np.linalg.norm(inertia.inertia) for inertia in pin_model.inertias])
+    force = mass * (acceleration + c * turning)
+    moment = mass * (v**2 + c * acceleration + c**2 * turning) + tensor * turning
+    for joint in reversed(range(1, len(parents))):
+        force[:, parents[joint]] += force[:, joint]
+        moment[:, parents[joint]] += moment[:, joint] + reach[:, joint] * force[:, joint]
+
+    at = [link.joint for link in links]
+    arm = np.array([np.linalg.norm(link.p) for link in links])
+    own_mass = np.array([link.mass for link in links])
+    own_arm = arm + np.array([np.linalg.norm(link.com) for link in links])
+    own_tensor = np.array([np.linalg.norm(link.inertia) for link in links])
+    out = {
+        "F": own_mass * (acceleration[:, at] + own_arm * turning[:, at]),
+        "N": own_tensor * turning[:, at],
+        "f": force[:, at],
+        "n": moment[:, at] + arm * force[:, at],
+    }
+    return {key: OPERATIONS * EPS * size for key, size in out.items()}

@@ -1,0 +1,253 @@
+"""Where the rules of consumers about mass and inertia apply: each function yields the names of links.
+
+Thresholds and tolerances are the consumers'. Where a tensor lies nearer to a threshold than the consumer's own
+rounding, no rule of ours can say what it does, and a rule with the verdict "either" says so.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.inspection.bodies import principal
+from rttrr_pin.inspection.merged_links import lumps
+from rttrr_pin.inspection.reading import Document, Mass
+
+Array = NDArray[np.float64]
+
+EPS = float(np.finfo(np.float64).eps)
+
+SMALLEST_EIGENVALUE, SMALLEST_MOVING, SMALLEST_PRODUCT = 1e-14, 1e-15, 1e-12
+"""MuJoCo's mjEPS, mjMINVAL and, before version 3.14, kEigEPS."""
+
+NEGLIGIBLE = 1e-6
+"""Of the trace: what MuJoCo drops or leaves unturned of a tensor is told where it is more. Half a turn by 3.141593 is
+written as half a turn."""
+
+JACOBI = 4e-12
+"""MuJoCo's Jacobi iteration stops, before version 3.14, at products of 1e-12, or at rotations of 1.4e-6: its
+eigenvalues err by that much."""
+
+DRAKE_EPS, GAZEBO_EPS = 16.0 * EPS, 5.0 * EPS
+"""Of max(1, trace / 2), and of the trace."""
+
+GAZEBO_DIAGONAL, GAZEBO_ROUNDING = 1e-6, 1e-7
+"""gz-math takes products below a millionth of the largest moment for zero; else its moments come from an arccosine,
+which loses half of the digits where two moments are equal."""
+
+
+def _inertials(document: Document) -> Iterator[tuple[str, Mass]]:
+    return ((name, body.inertial) for name, body in document.links.items() if body.inertial is not None)
+
+
+def _products(tensor: Array) -> float:
+    """The largest product of inertia."""
+    return float(max(abs(tensor[0, 1]), abs(tensor[0, 2]), abs(tensor[1, 2])))
+
+
+def _sorted_moments(tensor: Array, negligible: float) -> Array:
+    """Principal moments, ascending; the diagonal itself, not rounded, where all products are negligible."""
+    if _products(tensor) <= negligible:
+        return np.sort(tensor.diagonal())
+    return principal(tensor)[0]
+
+
+def pinocchio_sum(document: Document) -> Iterator[str]:
+    """Moving links that are merged with others, and have no positive mass then."""
+    for name, lump in lumps(document).items():
+        inertials = [document.links[member].inertial for member in lump.members]
+        massive = sum(inertial is not None and inertial.mass.exact != 0 for inertial in inertials)
+        if name != document.root and massive > 1 and lump.mass <= EPS:
+            yield name
+
+
+def _mujoco_margins(tensor: Array) -> tuple[float, float, float]:
+    """How far MuJoCo's two tests are fulfilled, and by how much its rounding may move that."""
+    low, mid, high = (float(x) for x in _sorted_moments(tensor, 0.0))
+    slack = JACOBI * (1.0 + abs(low) + abs(mid) + abs(high)) if _products(tensor) else 0.0
+    return low - SMALLEST_EIGENVALUE, (low + mid) - high, slack
+
+
+def _mujoco_tested(document: Document) -> Iterator[tuple[str, float, float, float]]:
+    """Tensors that MuJoCo diagonalises: all but those of six zeros."""
+    for name, inertial in _inertials(document):
+        if inertial.written.any():
+            yield (name, *_mujoco_margins(inertial.written))
+
+
+def mujoco_eigenvalue(document: Document) -> Iterator[str]:
+    """A principal moment is surely too small."""
+    return (name for name, smallest, _, slack in _mujoco_tested(document) if smallest < -slack)
+
+
+def mujoco_triangle(document: Document) -> Iterator[str]:
+    """The triangle inequality is surely violated."""
+    return (
+        name for name, smallest, triangle, slack in _mujoco_tested(document) if smallest >= -slack and triangle < -slack
+    )
+
+
+def mujoco_rounding(document: Document) -> Iterator[str]:
+    """One of the two tests is open, and the other is not surely failed."""
+    for name, smallest, triangle, slack in _mujoco_tested(document):
+        if slack and min(smallest, triangle) >= -slack and min(smallest, triangle) < slack:
+            yield name
+
+
+def mujoco_minimum(document: Document) -> Iterator[str]:
+    """Moving links with too little mass or inertia; collision shapes stand in for a missing <inertial>."""
+    for name, lump in lumps(document, massive_only=True).items():
+        if name == document.root or any(_from_shapes(document, member) for member in lump.members):
+            continue
+        smallest = SMALLEST_MOVING if len(lump.members) == 1 else SMALLEST_EIGENVALUE
+        if lump.mass < SMALLEST_MOVING or float(_sorted_moments(lump.inertia, 0.0)[0]) < smallest:
+            yield name
+
+
+def _from_shapes(document: Document, name: str) -> bool:
+    """Whether MuJoCo takes mass and inertia of a link from its collision shapes."""
+    body = document.links[name]
+    return body.inertial is None and any(shape.role == "collision" for shape in body.geometry)
+
+
+def _moving(document: Document) -> Iterator[tuple[str, Mass]]:
+    """Links that do not belong to the world."""
+    anchored = lumps(document)[document.root].members
+    return ((name, inertial) for name, inertial in _inertials(document) if name not in anchored)
+
+
+def mujoco_negative(document: Document) -> Iterator[str]:
+    """Negative masses of links that are merged; of a link by itself, that is too little mass."""
+    merged = {name for lump in lumps(document).values() if len(lump.members) > 1 for name in lump.members}
+    return (name for name, inertial in _moving(document) if name in merged and inertial.mass.exact < 0)
+
+
+def mujoco_massless_tensor(document: Document) -> Iterator[str]:
+    """Inertia without mass that is merged into a link."""
+    for name, inertial in _moving(document):
+        massless = 0 <= inertial.mass.exact < SMALLEST_MOVING
+        if massless and not document.carried_by[name].moves and inertial.written.any():
+            yield name
+
+
+def mujoco_geometry(document: Document) -> Iterator[str]:
+    """Links with collision shapes but without <inertial>, unless they belong to the world."""
+    anchored = lumps(document)[document.root].members
+    return (name for name in document.links if name not in anchored and _from_shapes(document, name))
+
+
+def mujoco_products(document: Document) -> Iterator[str]:
+    """Products below 1e-12 that are not negligible."""
+    for name, inertial in _moving(document):
+        largest = _products(inertial.written)
+        if NEGLIGIBLE * abs(float(np.trace(inertial.written))) < largest < SMALLEST_PRODUCT:
+            yield name
+
+
+def mujoco_rpy(document: Document) -> Iterator[str]:
+    """Tensors that their rpy turns into others."""
+    return (name for name, inertial in _moving(document) if _differ(inertial.inertia, inertial.written))
+
+
+def _differ(turned: Array, tensor: Array) -> bool:
+    return bool(np.linalg.norm(turned - tensor) > NEGLIGIBLE * abs(float(np.trace(tensor))))
+
+
+def mujoco_fused(document: Document) -> Iterator[str]:
+    """Merged links of which MuJoCo exchanges the placement and the inertial frame, or turns the tensor twice."""
+    for base, lump in lumps(document).items():
+        R, p = document.placements[base]
+        for name in lump.members[1:] if base != document.root else ():
+            inertial, (R_member, p_member) = document.links[name].inertial, document.placements[name]
+            if inertial is None or inertial.mass.exact < SMALLEST_MOVING:
+                continue
+            if _misplaced(inertial, R.T @ R_member, R.T @ (p_member - p)):
+                yield name
+
+
+def _misplaced(inertial: Mass, R: Array, p: Array) -> bool:
+    """Whether it matters that a link at R, p is merged in the wrong order, or turned twice.
+
+    MuJoCo's inertial frame has principal axes, by falling moment: it is turned against the link where there are
+    products, or where moments rise. Shifts alone can be exchanged.
+    """
+    tensor = inertial.written
+    axes_turned = bool(_products(tensor)) or bool(np.any(np.diff(tensor.diagonal()) > 0.0))
+    if np.allclose(R, np.eye(3), rtol=0.0, atol=NEGLIGIBLE):
+        return axes_turned and bool(np.any(np.abs(p) > NEGLIGIBLE))
+    return axes_turned or any(inertial.com) or _differ(R @ tensor @ R.T, tensor)
+
+
+def _beyond(moments: Array, tolerance: float, rounding: float) -> bool | None:
+    """Whether triangle inequality or positivity is violated by more than a tolerance; None where rounding decides."""
+    low, mid, high = (float(x) for x in moments)
+    excess = max(high - mid - low, -low) - tolerance
+    return None if abs(excess) <= rounding else excess > 0.0
+
+
+def _drake(document: Document) -> Iterator[tuple[str, bool | None]]:
+    for name, inertial in _inertials(document):
+        moments = _sorted_moments(inertial.written, 0.0)
+        rounding = 8.0 * EPS * float(np.abs(inertial.written).max())
+        yield name, _beyond(moments, DRAKE_EPS * max(1.0, float(moments.sum()) / 2.0), rounding)
+
+
+def drake_inertia(document: Document) -> Iterator[str]:
+    """Impossible beyond Drake's tolerance."""
+    return (name for name, beyond in _drake(document) if beyond)
+
+
+def drake_rounding(document: Document) -> Iterator[str]:
+    """At Drake's tolerance."""
+    return (name for name, beyond in _drake(document) if beyond is None)
+
+
+def drake_mass(document: Document) -> Iterator[str]:
+    """Negative mass, or none with an inertia."""
+    for name, inertial in _inertials(document):
+        if inertial.mass.exact < 0 or (inertial.mass.exact == 0 and inertial.written.any()):
+            yield name
+
+
+def _gazebo(document: Document) -> Iterator[tuple[str, bool | None]]:
+    """What becomes an SDFormat link: neither the link called world, nor a lump without mass, nor what hangs on one."""
+    found, dropped = lumps(document, spare="world"), set(gazebo_massless(document))
+    for _, name in document.walk():
+        joint = document.carried_by.get(name)
+        if joint is not None and joint.parent in dropped:
+            dropped.add(name)
+    for name, lump in found.items():
+        if name != "world" and not dropped & set(lump.members):
+            largest = float(np.abs(lump.inertia).max())
+            diagonal = _products(lump.inertia) <= GAZEBO_DIAGONAL * largest
+            moments = _sorted_moments(lump.inertia, GAZEBO_DIAGONAL * largest)
+            rounding = (4.0 * EPS if diagonal and len(lump.members) == 1 else GAZEBO_ROUNDING) * largest
+            yield name, _beyond(moments, GAZEBO_EPS * abs(float(moments.sum())), rounding)
+
+
+def gazebo_inertia(document: Document) -> Iterator[str]:
+    """Invalid beyond gz-math's tolerance."""
+    return (name for name, beyond in _gazebo(document) if beyond)
+
+
+def gazebo_rounding(document: Document) -> Iterator[str]:
+    """At gz-math's tolerance, or a boundary case that merging has rounded."""
+    return (name for name, beyond in _gazebo(document) if beyond is None)
+
+
+def gazebo_massless(document: Document) -> Iterator[str]:
+    """Lumps whose mass is not above zero."""
+    return (name for name, lump in lumps(document, spare="world").items() if name != "world" and lump.mass <= 0.0)
+
+
+def gazebo_empty(document: Document) -> Iterator[str]:
+    """The root among these."""
+    return (name for name in gazebo_massless(document) if name == document.root)
+
+
+def kdl_root(document: Document) -> Iterator[str]:
+    """The root, where it has an <inertial>."""
+    if document.links[document.root].inertial is not None:
+        yield document.root

@@ -1,0 +1,170 @@
+"""What each consumer does with a URDF: its rules as data, with their sources.
+
+Only masses, inertias, joint types and limits are judged; meshes, materials and extensions are not. "Alter" means that
+the consumer's robot has other masses, inertias, degrees of freedom or limits than the file's. Pinocchio, MuJoCo and
+Drake are run by the tests and compared with these rules; Gazebo and KDL do not install from PyPI, and are judged by
+their source alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+
+from rttrr_pin.inspection import parser_inertia as inertia
+from rttrr_pin.inspection import parser_joints as joints
+from rttrr_pin.inspection.reading import Document
+from rttrr_pin.inspection.results import Does, Hit, Verdict
+
+Places = Callable[[Document], Iterator[str]]
+
+
+@dataclass(frozen=True)
+class Rule:
+    """What a consumer does with something in a file.
+
+    Attributes:
+        id: stable, such as `"mujoco-triangle"`.
+        consumers: those that have the rule.
+        does: what they do then.
+        reason: the rule in a sentence.
+        source: file and function of the consumer that says so.
+        places: the links or joints where it applies.
+        at_worst: what they do at worst, where `does` is "either".
+    """
+
+    id: str
+    consumers: tuple[str, ...]
+    does: Does
+    reason: str
+    source: str
+    places: Places
+    at_worst: Does = Does.REFUSE
+
+
+PINOCCHIO, MUJOCO, DRAKE, GAZEBO, KDL = CONSUMERS = ("Pinocchio", "MuJoCo", "Drake", "Gazebo", "KDL")
+
+URDFDOM = (PINOCCHIO, GAZEBO, KDL)
+"""They parse with urdfdom."""
+
+RULES = (
+    Rule("urdfdom-limit", URDFDOM, Does.REFUSE,
+         "a revolute or prismatic joint has no <limit>",
+         "urdfdom: urdf_parser/src/joint.cpp, parseJoint", joints.without_limit),
+    Rule("urdfdom-effort", URDFDOM, Does.REFUSE,
+         "a <limit> has no effort or no velocity",
+         "urdfdom: urdf_parser/src/joint.cpp, parseJointLimits", joints.without_effort),
+    Rule("pinocchio-sum", (PINOCCHIO,), Does.ALTER,
+         "masses fixed to each other add up to none or less: their sum is divided by eps instead of itself",
+         "pinocchio: include/pinocchio/spatial/inertia.hpp, InertiaTpl::__plus__", inertia.pinocchio_sum),
+    Rule("pinocchio-mimic", (PINOCCHIO,), Does.ALTER,
+         "<mimic> is ignored unless mimic=True is passed: the joint moves by itself",
+         "pinocchio: include/pinocchio/parsers/urdf.hpp, buildModel, argument mimic", joints.mimicking),
+    Rule("mujoco-eigenvalue", (MUJOCO,), Does.REFUSE,
+         "a principal moment is below 1e-14 kg m^2 (mjEPS), and the inertia is not all zero",
+         "mujoco: src/user/user_util.cc, mjuu_fullInertia", inertia.mujoco_eigenvalue),
+    Rule("mujoco-triangle", (MUJOCO,), Does.REFUSE,
+         "the principal moments violate A + B >= C, in floating point and without a tolerance",
+         "mujoco: src/user/user_objects.cc, mjCBody::Compile", inertia.mujoco_triangle),
+    Rule("mujoco-rounding", (MUJOCO,), Does.EITHER,
+         "one of the two limits above is so near that the rounding of the diagonalisation decides",
+         "mujoco: src/user/user_util.cc, mjuu_eig3", inertia.mujoco_rounding),
+    Rule("mujoco-minimum", (MUJOCO,), Does.REFUSE,
+         "a moving link, with what is fixed to it, has a mass or a principal moment below 1e-15 (mjMINVAL)",
+         "mujoco: src/user/user_model.cc, mjCModel::CheckBodyMassInertia", inertia.mujoco_minimum),
+    Rule("mujoco-negative", (MUJOCO,), Does.ALTER,
+         "a negative mass, merged with other masses, becomes 0 (boundmass)",
+         "mujoco: src/user/user_objects.cc, mjCBody::Compile", inertia.mujoco_negative),
+    Rule("mujoco-massless-tensor", (MUJOCO,), Does.ALTER,
+         "the inertia of a fixed link with a mass below 1e-15 kg (mjMINVAL) is dropped",
+         "mujoco: src/user/user_model.cc, mjCModel::FuseStatic", inertia.mujoco_massless_tensor),
+    Rule("mujoco-geometry", (MUJOCO,), Does.ALTER,
+         "a link without <inertial> gets mass and inertia from its collision shapes, at 1000 kg/m^3",
+         "mujoco: src/user/user_objects.cc, mjCBody::InertiaFromGeom", inertia.mujoco_geometry),
+    Rule("mujoco-products", (MUJOCO,), Does.EITHER,
+         "before version 3.14, products of inertia below 1e-12 kg m^2 are dropped (kEigEPS)",
+         "mujoco: src/user/user_util.cc, mjuu_eig3", inertia.mujoco_products, at_worst=Does.ALTER),
+    Rule("mujoco-rpy", (MUJOCO,), Does.EITHER,
+         "before version 3.14, the rpy of <inertial> is ignored: its tensor is taken in the axes of the link",
+         "mujoco: src/user/user_objects.cc, mjCBody::Compile", inertia.mujoco_rpy, at_worst=Does.ALTER),
+    Rule("mujoco-fused", (MUJOCO,), Does.EITHER,
+         "from version 3.3.3 to 3.10, a fixed link that is turned, or whose principal axes are, is merged wrongly",
+         "mujoco: src/user/user_objects.cc, mjCBody::AccumulateInertia", inertia.mujoco_fused, at_worst=Does.ALTER),
+    Rule("mujoco-mimic", (MUJOCO,), Does.ALTER,
+         "<mimic> is ignored before version 3.13, and then a soft constraint: the joint can move by itself",
+         "mujoco: src/xml/xml_urdf.cc, mjXURDF::Joint", joints.mimicking),
+    Rule("mujoco-range", (MUJOCO,), Does.ALTER,
+         "a range of length zero, from above to below, or with an end left out, is no limit: the joint moves freely",
+         "mujoco: src/xml/xml_urdf.cc, mjXURDF::Joint", joints.degenerate_range),
+    Rule("mujoco-continuous", (MUJOCO,), Does.EITHER,
+         "before version 4, the range of a continuous joint limits it",
+         "mujoco: src/xml/xml_urdf.cc, mjXURDF::Joint", joints.continuous_range, at_worst=Does.ALTER),
+    Rule("mujoco-floating", (MUJOCO,), Does.REFUSE,
+         "a floating joint hangs on a link that moves",
+         "mujoco: src/user/user_model.cc, mjCModel::CopyTree", joints.floating_on_moving),
+    Rule("drake-inertia", (DRAKE,), Does.ALTER,
+         "an impossible inertia is replaced by that of a ball of water of the same mass, with a warning",
+         "drake: multibody/parsing/detail_common.cc, ParseSpatialInertia", inertia.drake_inertia),
+    Rule("drake-rounding", (DRAKE,), Does.EITHER,
+         "the triangle inequality is violated by just Drake's tolerance, 16 eps max(1 kg m^2, trace / 2)",
+         "drake: multibody/tree/rotational_inertia.cc, AreMomentsOfInertiaNearPositiveAndSatisfyTriangleInequality",
+         inertia.drake_rounding, at_worst=Does.ALTER),
+    Rule("drake-mass", (DRAKE,), Does.ALTER,
+         "a negative mass, or none with an inertia, becomes 1 kg of water, with a warning",
+         "drake: multibody/parsing/detail_common.cc, ParseSpatialInertia", inertia.drake_mass),
+    Rule("drake-floating", (DRAKE,), Does.ALTER,
+         "a floating joint is left out, with a warning: the link is free in the world, whatever its parent",
+         "drake: multibody/parsing/detail_urdf_parser.cc, UrdfParser::ParseJoint", joints.floating),
+    Rule("drake-mimic", (DRAKE,), Does.REFUSE,
+         "a fixed joint has a <mimic>",
+         "drake: multibody/parsing/detail_urdf_parser.cc, UrdfParser::ParseMimicTag", joints.fixed_mimic),
+    Rule("gazebo-inertia", (GAZEBO,), Does.REFUSE,
+         "a link, with what is fixed to it, has an invalid inertia (LINK_INERTIA_INVALID)",
+         "sdformat: src/Link.cc, Link::Load; gz-math: MassMatrix3::IsValid", inertia.gazebo_inertia),
+    Rule("gazebo-rounding", (GAZEBO,), Does.EITHER,
+         "the triangle inequality is violated by just gz-math's tolerance, 5 eps trace, or by its rounding",
+         "gz-math: MassMatrix3::ValidMoments and MassMatrix3::PrincipalMoments", inertia.gazebo_rounding),
+    Rule("gazebo-massless", (GAZEBO,), Does.ALTER,
+         "a link without mass, with what is fixed to it, is left out with all links beyond it, with a warning",
+         "sdformat: src/parser_urdf.cc, CreateSDF", inertia.gazebo_massless),
+    Rule("gazebo-empty", (GAZEBO,), Does.REFUSE,
+         "the root link, with what is fixed to it, has no mass: with it all links are left out, and a model needs one",
+         "sdformat: src/parser_urdf.cc, CreateSDF; src/Model.cc, MODEL_WITHOUT_LINK", inertia.gazebo_empty),
+    Rule("gazebo-joint", (GAZEBO,), Does.ALTER,
+         "planar and floating joints are left out: the link is free in the world",
+         "sdformat: src/parser_urdf.cc, CreateJoint", joints.planar_or_floating),
+    Rule("kdl-root", (KDL,), Does.ALTER,
+         "the inertia of the root link is left out, with a warning",
+         "kdl_parser: src/kdl_parser.cpp, treeFromUrdfModel", inertia.kdl_root),
+    Rule("kdl-joint", (KDL,), Does.ALTER,
+         "planar and floating joints become fixed, with a warning",
+         "kdl_parser: src/kdl_parser.cpp, toKdl", joints.planar_or_floating),
+    Rule("kdl-mimic", (KDL,), Does.ALTER,
+         "<mimic> is ignored: the joint moves by itself",
+         "kdl_parser: src/kdl_parser.cpp, toKdl", joints.mimicking),
+)  # fmt: skip
+
+
+def verdicts(document: Document) -> tuple[Verdict, ...]:
+    """What each consumer does with a file."""
+    found: dict[str, list[tuple[Rule, str]]] = {consumer: [] for consumer in CONSUMERS}
+    for rule in RULES:
+        for name in rule.places(document):
+            for consumer in rule.consumers:
+                found[consumer].append((rule, name))
+    return tuple(
+        Verdict(consumer, _worst(rule for rule, _ in applied), tuple(_hit(rule, name) for rule, name in applied))
+        for consumer, applied in found.items()
+    )
+
+
+def _worst(rules: Iterable[Rule]) -> Does:
+    """What a consumer does under these rules; "either" only where the open ones may make it worse than the others."""
+    order, applied = list(Does), list(rules)
+    sure = max((rule.does for rule in applied if rule.does is not Does.EITHER), key=order.index, default=Does.ACCEPT)
+    may = max((rule.at_worst for rule in applied if rule.does is Does.EITHER), key=order.index, default=sure)
+    return Does.EITHER if order.index(may) > order.index(sure) else sure
+
+
+def _hit(rule: Rule, name: str) -> Hit:
+    return Hit(rule.id, rule.does, name, rule.reason, rule.source)

@@ -1,0 +1,211 @@
+"""What a link looks like: its visual and collision shapes, their hull, and the solids that they would be if filled.
+
+Meshes are opened where the file is found, from the URDF's folder or upwards from it, and never otherwise: nothing is
+downloaded, and a mesh that cannot be read leaves the geometry unknown.
+"""
+
+from __future__ import annotations
+
+import logging
+import warnings
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import lru_cache
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.core.solids import Box, Cylinder, RigidBody, Sphere, rotation
+from rttrr_pin.inspection.reading import Body, Geometry
+
+Array = NDArray[np.float64]
+
+MESH_TYPES = (".stl", ".dae", ".obj", ".ply")
+
+LARGEST_MESH = 64 * 2**20
+"""Bytes."""
+
+SMALLEST, LARGEST = 1e-9, 1e9
+"""Metres; what is drawn smaller or larger, or elsewhere, is no robot, and its volume may be no float."""
+
+AROUND = 24
+"""Points on a circle; the circle through them is drawn around, so that the hull contains the cylinder or ball."""
+
+
+@dataclass(frozen=True, eq=False)
+class Filled:
+    """A solid that the link may be.
+
+    Attributes:
+        label: such as `"the collision box"` or `"the hull of the visuals"`.
+        body: with unit density: its mass is the volume [m^3]; com [m] and axes are the link frame's.
+        exact: whether it is one box, cylinder or ball, and no approximation by a hull.
+    """
+
+    label: str
+    body: RigidBody
+    exact: bool
+
+    def inertia(self, mass: float) -> Array:
+        """The tensor about its centre in link axes, (3, 3) [kg m^2], for a mass [kg]."""
+        return np.asarray(self.body.inertia * (mass / self.body.mass))
+
+
+@dataclass(frozen=True, eq=False)
+class Looks:
+    """The geometry of a link.
+
+    Attributes:
+        points: of the hull of all shapes, (N, 3) [m], in the link frame; empty where nothing is known.
+        volume: of that hull [m^3]; 0 where it is flat or unknown.
+        solids: what the link would be if its shapes were filled.
+        missing: meshes that could not be read.
+    """
+
+    points: Array
+    volume: float = 0.0
+    solids: tuple[Filled, ...] = ()
+    missing: tuple[str, ...] = ()
+
+    @property
+    def known(self) -> bool:
+        """Whether there are shapes and all of them could be read."""
+        return len(self.points) > 0 and not self.missing
+
+
+def looks_of(body: Body, folder: Path | None) -> Looks:
+    """The geometry of a link.
+
+    Args:
+        body: the link.
+        folder: where the URDF lies; None for a text, whose meshes cannot be found.
+    """
+    clouds: dict[str, list[Array]] = {"visual": [], "collision": []}
+    missing, singles = [], list[Filled]()
+    for shape in body.geometry:
+        if shape.kind == "mesh":
+            points = _mesh_points(shape, folder)
+        else:
+            solid = _primitive(shape)
+            points = np.zeros((0, 3)) if solid is None else _outline(solid)
+            if len(points) and solid is not None and sum(other.role == shape.role for other in body.geometry) == 1:
+                placed = RigidBody.of(solid, 1.0).placed(shape.xyz, shape.rpy)
+                singles.append(Filled(f"the {shape.role} {shape.kind}", placed, True))
+        if not len(points) or not SMALLEST < float(np.abs(points).max()) + np.abs(shape.xyz).max() < LARGEST:
+            missing.append(shape.attributes.get("filename", f"<{shape.kind}>"))
+        elif shape.role in clouds:
+            clouds[shape.role].append(points @ rotation(shape.rpy).T + np.array(shape.xyz))
+    hulls = [_hull(role, cloud) for role, cloud in clouds.items() if cloud]
+    everything = [points for cloud in clouds.values() for points in cloud]
+    whole = _hull("link", everything) if everything else None
+    done = {solid.label.split()[1] for solid in singles}
+    return Looks(
+        points=np.concatenate(everything) if everything else np.zeros((0, 3)),
+        volume=0.0 if whole is None else whole.body.mass,
+        solids=(*singles, *(hull for hull in hulls if hull is not None and hull.label.split()[-1][:-1] not in done)),
+        missing=tuple(dict.fromkeys(missing)),
+    )
+
+
+def _primitive(shape: Geometry) -> Box | Cylinder | Sphere | None:
+    """The solid; None where its numbers are none, or its tag is unknown."""
+    if shape.kind not in ("box", "cylinder", "sphere"):
+        return None
+    names = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",)}[shape.kind]
+    try:
+        sizes = [float(word) for name in names for word in shape.attributes[name].split()]
+        if not all(SMALLEST < size < LARGEST for size in sizes):
+            return None
+        if shape.kind == "box":
+            x, y, z = sizes
+            return Box((x, y, z))
+        return Sphere(*sizes) if shape.kind == "sphere" else Cylinder(*sizes)
+    except (KeyError, ValueError, TypeError):  # an attribute is missing or no number; too few or too many numbers
+        return None
+
+
+def _outline(solid: Box | Cylinder | Sphere) -> Array:
+    """Points whose hull contains the solid, in its own frame."""
+    if isinstance(solid, Box):
+        return np.array(list(product(*((-edge / 2, edge / 2) for edge in solid.size))))
+    angles = np.arange(AROUND) * (2.0 * np.pi / AROUND)
+    circle = np.stack([np.cos(angles), np.sin(angles), np.zeros(AROUND)], axis=-1) / np.cos(np.pi / AROUND)
+    if isinstance(solid, Cylinder):
+        ends = (np.array([0.0, 0.0, solid.length / 2 * sign]) for sign in (-1, 1))
+        return np.concatenate([circle * solid.radius + end for end in ends])
+    heights = np.sin(np.linspace(-np.pi / 2, np.pi / 2, AROUND // 2 + 1))
+    rings = [circle * np.sqrt(max(1.0 - z * z, 0.0)) + np.array([0.0, 0.0, z]) for z in heights]
+    return np.asarray(np.concatenate(rings) * (solid.radius / np.cos(np.pi / AROUND)))
+
+
+def _hull(role: str, clouds: Iterable[Array]) -> Filled | None:
+    """The filled hull of points; None where they lie in a plane."""
+    import trimesh
+
+    points = np.concatenate(list(clouds))
+    try:
+        hull = trimesh.convex.convex_hull(points)
+        volume, com, inertia = float(hull.volume), np.array(hull.center_mass), np.array(hull.moment_inertia)
+    except Exception:  # Qhull's own error for flat or too few points; scipy names it differently by version
+        return None
+    if not (volume > 0.0 and np.isfinite(com).all() and np.isfinite(inertia).all()):
+        return None
+    return Filled(f"the hull of the {role}s", RigidBody(volume, com, inertia), False)
+
+
+def _mesh_points(shape: Geometry, folder: Path | None) -> Array:
+    """The corners of a mesh's hull, scaled; none where it cannot be read."""
+    path = None if folder is None else find_mesh(shape.attributes.get("filename", ""), folder)
+    if path is None:
+        return np.zeros((0, 3))
+    try:
+        scale = [float(word) for word in shape.attributes.get("scale", "1 1 1").split()]
+        return _load(path) * (np.array(scale) if len(scale) == 3 else 1.0)
+    except ValueError:
+        return np.zeros((0, 3))
+
+
+def find_mesh(filename: str, folder: Path) -> Path | None:
+    """The file that a URDF names.
+
+    `package://name/rest` is looked for as `name/rest` in the URDF's folder and in those above it; anything else from
+    the URDF's folder.
+    """
+    if filename.startswith(("package://", "model://")):
+        rest = filename.split("://", 1)[1]
+        places = [up / rest for up in (folder, *folder.parents)]
+    else:
+        places = [folder / filename.removeprefix("file://")]
+    for path in places:
+        try:
+            if path.suffix.lower() in MESH_TYPES and path.is_file() and path.stat().st_size <= LARGEST_MESH:
+                return path
+        except (OSError, ValueError):  # a name too long, or with a null byte
+            continue
+    return None
+
+
+@lru_cache(maxsize=512)
+def _load(path: Path) -> Array:
+    """The corners of a mesh's hull, in metres; none where it cannot be read."""
+    import trimesh
+
+    quiet = logging.getLogger("trimesh")
+    level = quiet.level
+    quiet.setLevel(logging.CRITICAL)
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            mesh: Any = trimesh.load(path, force="mesh", process=False, skip_materials=True)
+            if mesh.units not in (None, "m", "meter", "meters"):
+                mesh.convert_units("meters")
+            points = np.asarray(mesh.vertices, dtype=np.float64)
+            points = points[np.isfinite(points).all(axis=1)]
+            return np.asarray(trimesh.convex.convex_hull(points).vertices) if len(points) > 100 else points
+    except Exception:  # whatever a damaged mesh does to its reader, inspection goes on without it
+        return np.zeros((0, 3))
+    finally:
+        quiet.setLevel(level)

@@ -1,0 +1,146 @@
+"""What the laws of mechanics are tried on: a robot in motion, with what several laws look at computed once."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.core.algebra import ZERO, Scalar, Vector
+from rttrr_pin.core.dual import Dual, part_of, value_of
+from rttrr_pin.core.dynamics import Result, bodies, dynamics
+from rttrr_pin.core.energy import LinkState, moving_links
+from rttrr_pin.core.joint_motion import Body
+from rttrr_pin.core.model import Model
+from rttrr_pin.core.newton_euler import Payload
+from rttrr_pin.core.payload import Load, payloads_of
+from rttrr_pin.core.scalars import Arithmetic, columns
+from rttrr_pin.core.tangent import TIME, in_time, over_duals
+from rttrr_pin.exact.rounding import BOUNDED, Bounded, coordinate_scalars
+
+Array = NDArray[np.float64]
+Rows = list[list[Scalar]]
+
+
+@dataclass(frozen=True)
+class Case:
+    """States of a robot in scalars of one kind.
+
+    Attributes:
+        model: the robot.
+        arithmetic: the kind of scalar.
+        q: a scalar for each coordinate.
+        v: a scalar for each rate.
+        a: a scalar for each acceleration.
+        payloads: what the robot exerts on its surroundings.
+    """
+
+    model: Model
+    arithmetic: Arithmetic
+    q: Sequence[Scalar]
+    v: Sequence[Scalar]
+    a: Sequence[Scalar]
+    payloads: Sequence[Payload]
+
+    @classmethod
+    def bounded(cls, model: Model, q: Array, v: Array, a: Array, loads: Sequence[Load] = ()) -> Case:
+        """A batch of states in (value, bound) scalars; q (N, nq), v and a (N, nv)."""
+        v_, a_ = ([Bounded(column, 0.0) for column in columns(x)] for x in (v, a))
+        return cls(model, BOUNDED, coordinate_scalars(model, q), v_, a_, payloads_of(loads, BOUNDED))
+
+    @property
+    def at_rest(self) -> list[Scalar]:
+        """No rate, or no acceleration."""
+        return [0] * self.model.nv
+
+    @cached_property
+    def links(self) -> list[Body]:
+        """The links with their joints."""
+        return bodies(self.model, self.arithmetic)
+
+    @cached_property
+    def gravity(self) -> Vector:
+        """The field in base axes."""
+        return Vector.of(self.model.gravity, lambda value: self.arithmetic.number(value, 0.0))
+
+    @cached_property
+    def result(self) -> Result:
+        """What the specification says of these states."""
+        return self.forces()
+
+    def forces(
+        self,
+        v: Sequence[Scalar] | None = None,
+        a: Sequence[Scalar] | None = None,
+        payloads: Sequence[Payload] | None = None,
+        links: Sequence[Body] | None = None,
+        gravity: Vector | None = None,
+    ) -> Result:
+        """What it says where something is otherwise."""
+        return dynamics(
+            self.model,
+            self.arithmetic,
+            self.q,
+            self.v if v is None else v,
+            self.a if a is None else a,
+            self.payloads if payloads is None else payloads,
+            self.links if links is None else links,
+            self.gravity if gravity is None else gravity,
+        )
+
+    @cached_property
+    def duals(self) -> Arithmetic:
+        """Duals over the scalars."""
+        return over_duals(self.arithmetic)
+
+    @cached_property
+    def flow(self) -> tuple[list[Dual], list[Dual]]:
+        """Coordinates and rates as they move in time, q' = v and v' = a."""
+        return in_time(self.model.moving, self.q, self.v, self.a, self.arithmetic)
+
+    @cached_property
+    def moving(self) -> list[LinkState]:
+        """The links as they move in time: duals."""
+        return moving_links(self.model, self.links, *self.flow, self.duals)
+
+    @cached_property
+    def placed(self) -> list[LinkState]:
+        """The links now."""
+        return [x.now for x in self.moving]
+
+    @cached_property
+    def _unit_forces(self) -> Rows:
+        """[j][i]: tau_i for an acceleration of 1 along rate j, without gravity, rates and drives; duals in time."""
+        model, n = self.model.without_drives(), self.model.nv
+        units = [[int(i == j) for i in range(n)] for j in range(n)]
+        q_t = self.flow[0]
+        return [dynamics(model, self.duals, q_t, self.at_rest, unit, (), self.links, ZERO).tau for unit in units]
+
+    @cached_property
+    def mass_matrix(self) -> Rows:
+        """M by rows: column j is the force of the acceleration of 1 along rate j; without armature."""
+        return [[value_of(column[i]) for column in self._unit_forces] for i in range(self.model.nv)]
+
+    @cached_property
+    def mass_matrix_rate(self) -> Rows:
+        """Its time derivative."""
+        return [[part_of(column[i], TIME) for column in self._unit_forces] for i in range(self.model.nv)]
+
+    @cached_property
+    def kinetic_matrix(self) -> Rows:
+        """The same from the kinetic energy: d^2 T / dv_i dv_j = sum of M J_C^T J_C + J_w^T I J_w; no recursion."""
+        n = range(self.model.nv)
+        v = [Dual(0, {j: 1}) for j in n]
+        moving = moving_links(self.model, self.links, self.q, v, self.duals)
+        rows: Rows = [[0] * self.model.nv for _ in n]
+        for body, link in zip(self.links, moving, strict=True):
+            v_C = link.velocity_of(body.r_C)
+            linear, angular = ([Vector(*(part_of(x, j) for x in y)) for j in n] for y in (v_C, link.w))
+            impulses = [(linear[j] * body.M, body.I @ angular[j]) for j in n]
+            for i in n:
+                for j, (P, L) in enumerate(impulses):
+                    rows[i][j] = linear[i].dot(P) + angular[i].dot(L) + rows[i][j]
+        return rows

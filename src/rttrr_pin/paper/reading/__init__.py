@@ -1,9 +1,0 @@
-"""From the text of an equation to its terms, each with every way it can be read."""
-
-from __future__ import annotations
-
-from rttrr_pin.paper.reading.latex import read_latex
-from rttrr_pin.paper.reading.python import read_python
-from rttrr_pin.paper.reading.vocabulary import Vocabulary
-
-__all__ = ["Vocabulary", "read_latex", "read_python"]

@@ -1,0 +1,1 @@
+"""What the features' reports share: output, progress, JSON, files, LaTeX."""

@@ -1,0 +1,75 @@
+"""What the commands share: exit codes, a console whose reader may leave, a progress bar, text to a file or stdout."""
+
+from __future__ import annotations
+
+import os
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
+
+from rttrr_pin.reporting.files import as_json, write_whole
+
+AGREE, DISAGREE, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
+
+SHOW_PROGRESS_AFTER = 1.0
+"""Seconds."""
+
+
+class Output(Console):
+    """Standard output whose reader may leave early, as `head` does: the exit code stays that of the verdict."""
+
+    def on_broken_pipe(self) -> None:
+        """Throw away what follows."""
+        discard_stdout()
+
+
+def discard_stdout() -> None:
+    """What is still to be written goes nowhere."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
+@contextmanager
+def progress(total: int, quiet: bool, what: str = "states") -> Iterator[Any]:
+    """A function to call with the number done; it shows a bar on stderr once the run has lasted a second."""
+    started = time.monotonic()
+    columns = (TextColumn("{task.completed:,} of {task.total:,} " + what), BarColumn(), TimeRemainingColumn())
+    bar = Progress(*columns, console=Console(stderr=True), transient=True)
+    shown: list[TaskID] = []
+
+    def advance(done: int) -> None:
+        if quiet or not bar.console.is_terminal:
+            return
+        if not shown and time.monotonic() - started > SHOW_PROGRESS_AFTER:
+            bar.start()
+            shown.append(bar.add_task("", total=total))
+        for task in shown:
+            bar.update(task, completed=done)
+
+    try:
+        yield advance
+    finally:
+        if shown:
+            bar.stop()
+
+
+def write_json(target: str | None, data: Callable[[], dict[str, Any]]) -> None:
+    """JSON to stdout or, whole or not at all, to a file."""
+    write_text(target, lambda: as_json(data()))
+
+
+def write_text(target: str | None, text: Callable[[], str]) -> None:
+    """Text to stdout or, whole or not at all, to a file."""
+    if target == "-":
+        try:
+            sys.stdout.write(text())
+            sys.stdout.flush()
+        except BrokenPipeError:
+            discard_stdout()
+    elif target is not None:
+        write_whole(Path(target), text())

@@ -1,0 +1,215 @@
+"""Where robots come from: bundled and example robots, paths, folders, texts, xacro files, objects of yourdfpy.
+
+| a source | is |
+|---|---|
+| text that starts with `<` | a URDF |
+| `rttrr` | a bundled robot; it wins over a file of that name (`./rttrr` is the file) |
+| `example:panda` | a file of the package `example-robot-data`, by the names of `examples()` |
+| a path to a folder | the one `.urdf` or `.xacro` file in it or below |
+| a path that ends in `.xacro` | what the package `xacro` makes of it; messages then give the lines of its output |
+| any other path | a URDF file |
+| a `yourdfpy.URDF` | see `yourdfpy_object.py` |
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from collections import Counter
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypeAlias, TypeGuard
+
+from rttrr_pin.errors import InputError, UnknownNameError, UrdfError, shortened
+
+if TYPE_CHECKING:
+    import yourdfpy
+
+AnySource: TypeAlias = "str | os.PathLike[str] | yourdfpy.URDF"
+"""What `load` takes."""
+
+LARGEST_FILE = 64 * 2**20
+"""Bytes; the largest URDF of known robots has about one MiB."""
+
+EXAMPLE = "example:"
+"""What the name of an example robot starts with."""
+
+EXAMPLES_PACKAGE = "example-robot-data"
+
+SUFFIXES = (".urdf", ".xacro")
+"""How the robots in a folder end."""
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """The text of a URDF and what to call it in messages."""
+
+    name: str
+    text: bytes
+
+
+@cache
+def bundled() -> dict[str, Path]:
+    """The robots that come with the package, by name."""
+    packaged = Path(__file__).parents[1] / "robots"
+    in_checkout = Path(__file__).parents[3] / "urdf"  # an editable install leaves the files at the top level
+    folder = packaged if packaged.is_dir() else in_checkout
+    return {path.stem: path for path in sorted(folder.glob("*.urdf"))}
+
+
+@cache
+def examples() -> dict[str, Path]:
+    """The files of the package `example-robot-data`, by name.
+
+    The name is the file's, without `.urdf`: `panda`. Where two files share it, the robot's folder stands before it,
+    without `_description`: `anymal_b_simple/anymal`. The files are found without importing the package's loader.
+
+    Raises:
+        InputError: the package is not installed.
+    """
+    from importlib import metadata  # large, and of no use but for example robots
+
+    try:
+        files = metadata.files(EXAMPLES_PACKAGE) or []
+    except metadata.PackageNotFoundError:
+        raise InputError(
+            f"example robots need the package {EXAMPLES_PACKAGE}: pip install 'rttrr-pin[robots]'"
+        ) from None
+    robots = [file for file in files if file.suffix == ".urdf" and "robots" in file.parts]
+    shared = Counter(file.stem for file in robots)
+    names = {file: file.stem if shared[file.stem] == 1 else f"{_folder(file.parts)}/{file.stem}" for file in robots}
+    return {names[file]: Path(str(file.locate())) for file in sorted(robots, key=names.__getitem__)}
+
+
+def robots_in(folder: str | os.PathLike[str]) -> dict[str, Path]:
+    """The `.urdf` and `.xacro` files in a folder and below, by their path from it; hidden ones are left out.
+
+    Raises:
+        UrdfError: it is no folder, or holds no such file.
+    """
+    top = Path(folder)
+    if not top.is_dir():
+        raise UrdfError("is no folder, expected one that holds URDF files", source=shortened(str(folder)))
+    paths = {path.relative_to(top): path for path in sorted(top.rglob("*")) if path.suffix in SUFFIXES}
+    shown = (path for path in paths if not any(part.startswith(".") for part in path.parts))
+    found = {path.as_posix(): paths[path] for path in shown if paths[path].is_file()}
+    if not found:
+        raise UrdfError("is a folder without a .urdf or .xacro file: name the file", source=shortened(str(folder)))
+    return found
+
+
+def find(source: AnySource) -> Source:
+    """The text behind a source; see the table at the top of this file.
+
+    Raises:
+        UnknownNameError: there is neither such a bundled robot nor such a file, or no such example robot.
+        UrdfError: the file cannot be read, is too large to be a URDF, or is xacro that cannot be expanded; or the
+            folder does not hold exactly one.
+        InputError: the source is of another type, or an example robot is asked for without its package.
+    """
+    if _is_yourdfpy(source):
+        from rttrr_pin.urdf.yourdfpy_object import as_urdf
+
+        name = f"<yourdfpy.URDF {shortened(str(source.robot.name))!r}>"
+        return Source(name, _encoded(as_urdf(source.robot, name), name))
+    if isinstance(source, str):
+        return _find_text(source)
+    if isinstance(source, os.PathLike) and isinstance(os.fspath(source), str):
+        return _find_path(Path(source))
+    raise InputError(
+        f"the source is a {type(source).__name__}, expected a name, a path, the text of a URDF, or a yourdfpy.URDF"
+    )
+
+
+def _find_text(source: str) -> Source:
+    if source.lstrip("\ufeff \t\r\n").startswith("<"):
+        return Source("<string>", _encoded(source, "<string>"))
+    if not source.strip():
+        raise UrdfError("is empty, expected a URDF, its path or a name", source="<string>")
+    if "<" in source and "\n" in source.strip():
+        raise UrdfError("starts with other text, expected <robot ...> or a path", source="<string>", line=1)
+    if source in bundled():
+        return Source(bundled()[source].name, _read(bundled()[source]))
+    if source.startswith(EXAMPLE):
+        name = source.removeprefix(EXAMPLE)
+        return Source(source, _read(_example(name)))
+    return _find_path(Path(source))
+
+
+def _find_path(path: Path) -> Source:
+    try:
+        path = path.expanduser()
+        if path.is_dir():
+            path = _only_robot(path)
+        there = path.exists()
+    except (OSError, ValueError, RuntimeError) as error:  # too long, a zero byte, no such home, a folder that is shut
+        reason = getattr(error, "strerror", None) or error
+        raise UrdfError(f"cannot be read: {reason}", source=shortened(str(path))) from None
+    if not there:
+        fix = f"check the path, or write {EXAMPLE}NAME for an example robot"
+        raise UnknownNameError("bundled robot or file", shortened(str(path)), bundled(), fix)
+    text = _read(path)
+    if path.suffix == ".xacro":
+        from rttrr_pin.urdf.xacro import expanded
+
+        return Source(f"{path} (as xacro expands it)", expanded(path))
+    return Source(str(path), text)
+
+
+def _only_robot(folder: Path) -> Path:
+    found = robots_in(folder)
+    if len(found) > 1:
+        names = ", ".join(list(found)[:12]) + (f", ... ({len(found)} in all)" if len(found) > 12 else "")
+        raise UrdfError(
+            f"is a folder with {len(found)} robots ({names}): name one of them, or call load_all for all",
+            source=shortened(str(folder)),
+        )
+    return next(iter(found.values()))
+
+
+def _example(name: str) -> Path:
+    """The file of an example robot; its folder may stand before the name even where the name alone would do."""
+    known = examples()
+    matches = [path for path in known.values() if name in (f"{_folder(path.parts)}/{path.stem}", path.stem)]
+    if name in known or len(matches) == 1:
+        return known.get(name, matches[0])
+    twins = [other for other in known if other.rpartition("/")[2] == name]
+    raise UnknownNameError("example robot", shortened(name), twins or known)
+
+
+def _folder(parts: tuple[str, ...]) -> str:
+    """The robot's folder in `.../robots/panda_description/urdf/panda.urdf`, without `_description`."""
+    return parts[parts.index("robots") + 1].removesuffix("_description")
+
+
+def _is_yourdfpy(source: object) -> TypeGuard[Any]:
+    """Whether this is a `yourdfpy.URDF`; yourdfpy, which takes long to load, is loaded already if so."""
+    module = sys.modules.get("yourdfpy")
+    return module is not None and isinstance(source, module.URDF)
+
+
+def _encoded(text: str, name: str) -> bytes:
+    try:
+        return text.encode()
+    except UnicodeEncodeError as error:
+        line = text.count("\n", 0, error.start) + 1
+        raise UrdfError(
+            f"holds {text[error.start]!r}, half a character: read the file as UTF-8", source=name, line=line
+        ) from None
+
+
+def _read(path: Path) -> bytes:
+    try:
+        size = path.stat().st_size
+        if size <= LARGEST_FILE:
+            with path.open("rb") as file:
+                text = file.read(LARGEST_FILE + 1)  # a device may have no size and no end
+            size = len(text)
+    except (OSError, ValueError) as error:
+        raise UrdfError(f"cannot be read: {getattr(error, 'strerror', None) or error}", source=str(path)) from error
+    if size > LARGEST_FILE:
+        raise UrdfError(
+            f"has more than {LARGEST_FILE // 2**20} MiB, which no URDF has: is it a mesh?", source=shortened(str(path))
+        )
+    return text

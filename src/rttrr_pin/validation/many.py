@@ -1,0 +1,149 @@
+"""Many robots in one run: each is validated, or listed with what in its file stops it."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Iterator, Mapping
+from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
+from dataclasses import dataclass
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Literal
+
+from rttrr_pin.core.inputs import whole_number
+from rttrr_pin.errors import ModelMismatchError, RttrrError, UnknownNameError
+from rttrr_pin.implementations import ORACLES
+from rttrr_pin.loading import load
+from rttrr_pin.validation.run import validate
+from rttrr_pin.validation.states import FAMILIES, LAST_STATE
+
+BASES: tuple[Literal["fixed", "floating"], ...] = ("fixed", "floating")
+
+
+@dataclass(frozen=True, slots=True)
+class Task:
+    """What each robot goes through.
+
+    Attributes:
+        states: how many for each base.
+        seed: of the generator.
+        family: how states are drawn.
+        oracle: the program to compare with.
+    """
+
+    states: int = 10_000
+    seed: int = 0
+    family: str = "uniform"
+    oracle: str = "pinocchio"
+
+
+@dataclass(frozen=True, slots=True)
+class Entry:
+    """The outcome of one robot on one base.
+
+    Attributes:
+        name: of the robot among the sources.
+        base: "fixed" or "floating".
+        verdict: "agree", "disagree", or "unusable" where the file or the oracle stops it.
+        joints: degrees of freedom.
+        links: links that a joint carries.
+        eps: largest normwise error of any quantity, over all links, in eps.
+        share: largest share of the gate.
+        worst: the quantity, the place and the state of that share.
+        defect: what stops it, or what differs; empty otherwise.
+        seconds: wall time.
+    """
+
+    name: str
+    base: str
+    verdict: Literal["agree", "disagree", "unusable"]
+    joints: int = 0
+    links: int = 0
+    eps: float = 0.0
+    share: float = 0.0
+    worst: str = ""
+    defect: str = ""
+    seconds: float = 0.0
+
+
+def validate_many(
+    sources: Mapping[str, Path],
+    task: Task,
+    workers: int | None = None,
+    progress: Callable[[int], None] | None = None,
+) -> list[Entry]:
+    """Validate each robot, on a fixed and on a floating base.
+
+    Args:
+        sources: URDF files by name.
+        task: what each goes through.
+        workers: processes; None takes one for each core. The outcome does not depend on it.
+        progress: called with the number of entries done.
+
+    Returns:
+        Two entries for each source, in their order; none is left out.
+    """
+    _check(task)
+    if workers is not None:
+        whole_number("workers", workers, 1, 10_000)
+    jobs = [(name, str(path), base, task) for name, path in sources.items() for base in BASES]
+    entries: dict[int, Entry] = {}
+    for number, entry in _run(jobs, min(workers or os.cpu_count() or 1, len(jobs) or 1)):
+        entries[number] = entry
+        if progress is not None:
+            progress(len(entries))
+    return [entries[number] for number in range(len(jobs))]
+
+
+def _check(task: Task) -> None:
+    """What is wrong for every robot is an error once, not a row for each."""
+    whole_number("states", task.states, 1, LAST_STATE, "10^15, since none would prove nothing")
+    if task.family not in FAMILIES:
+        raise UnknownNameError("family of states", task.family, FAMILIES)
+    if task.oracle not in ORACLES:
+        raise UnknownNameError("oracle", task.oracle, ORACLES)
+
+
+Job = tuple[str, str, Literal["fixed", "floating"], Task]
+
+
+def _run(jobs: list[Job], workers: int) -> Iterator[tuple[int, Entry]]:
+    """Outcomes as they come; an interrupt ends the workers."""
+    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"))
+    try:
+        futures: dict[Future[Entry], int] = {pool.submit(_one, job): number for number, job in enumerate(jobs)}
+        while futures:
+            for future in wait(futures, return_when=FIRST_COMPLETED).done:
+                yield futures.pop(future), future.result()
+    except BaseException:
+        for process in list(pool._processes.values()):
+            process.terminate()
+        raise
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _one(job: Job) -> Entry:
+    """One robot on one base."""
+    name, path, base, task = job
+    start = time.perf_counter()
+    try:
+        robot = load(Path(path), base=base)
+        result = validate(robot, task.states, task.seed, task.family, oracle=task.oracle)
+    except RttrrError as error:
+        verdict: Literal["disagree", "unusable"] = "disagree" if isinstance(error, ModelMismatchError) else "unusable"
+        told = str(error).replace(str(path), Path(path).name)
+        return Entry(name, base, verdict, defect=told, seconds=time.perf_counter() - start)
+    worst = result.worst
+    return Entry(
+        name,
+        base,
+        "agree" if result.agrees else "disagree",
+        joints=robot.model.nv,
+        links=len(robot.link_names),
+        eps=max(seen.value for seen in result.whole.values()),
+        share=worst.share.value if worst else 0.0,
+        worst=f"{worst.quantity} at {worst.at}, state {worst.share.state}" if worst else "",
+        seconds=time.perf_counter() - start,
+    )

@@ -1,0 +1,490 @@
+"""Compiled programs on disk: found again, never mistaken for others, and never in the way."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import subprocess
+import sys
+import tempfile
+import warnings
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import fields, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from rttrr_pin import Drive, Robot, Wrench
+from rttrr_pin.compile import cache
+from rttrr_pin.compile.emit.llvm import LlvmEmitter
+from rttrr_pin.compile.kernel import fingerprint
+from rttrr_pin.core.joint import Joint, JointType, Mimic
+from rttrr_pin.core.model import Link, Model
+from rttrr_pin.errors import CacheWarning
+
+STATE = ([0.3], [0.4], [0.5])
+DEFINITION = """
+import os, sys, warnings
+import numpy as np
+from rttrr_pin import Robot
+from rttrr_pin.compile.emit.llvm import LlvmEmitter
+from rttrr_pin.core.joint import Joint, JointType
+from rttrr_pin.core.model import Link, Model
+
+def robot(mass=2.0):
+    link = Link("a", mass, np.array([0.1, 0.2, 0.3]), np.diag([1.0, 2.0, 2.5]))
+    joint = Joint("j", JointType.REVOLUTE, axis=np.array([0.0, 1.0, 0.0]))
+    return Robot(Model("one", Link("base"), (link,), (joint,)))
+
+STATE = ([0.3], [0.4], [0.5])
+"""
+
+
+def robot(mass: float = 2.0) -> Robot:
+    """Of one joint, the same in every process."""
+    link = Link("a", mass, np.array([0.1, 0.2, 0.3]), np.diag([1.0, 2.0, 2.5]))
+    joint = Joint("j", JointType.REVOLUTE, axis=np.array([0.0, 1.0, 0.0]))
+    return Robot(Model("one", Link("base"), (link,), (joint,)))
+
+
+def in_another_process(code: str, **variables: str) -> str:
+    done = subprocess.run(
+        [sys.executable, "-c", DEFINITION + code],
+        env={**os.environ, **variables},
+        stdout=subprocess.PIPE,
+        text=True,
+        timeout=120,
+        check=True,
+    )
+    return done.stdout
+
+
+@pytest.fixture
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    place = tmp_path / "not" / "yet" / "there"
+    monkeypatch.setenv(cache.VARIABLE, str(place))
+    return place
+
+
+@pytest.fixture(autouse=True)
+def warnings_not_yet_given() -> Iterator[None]:
+    cache._warn.cache_clear()
+    yield
+    cache._warn.cache_clear()
+
+
+@pytest.fixture
+def compiled(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """One entry for each time that the compiler ran."""
+    runs: list[int] = []
+    emit = LlvmEmitter.emit
+    monkeypatch.setattr(LlvmEmitter, "emit", lambda self, program: (runs.append(1), emit(self, program))[1])
+    return runs
+
+
+def entries(folder: Path) -> list[Path]:
+    assert not list(folder.glob("*.partial"))
+    return sorted(folder.glob(f"*{cache.SUFFIX}"))
+
+
+def test_an_entry_is_written_once_and_read_by_other_robots_objects(folder: Path, compiled: list[int]) -> None:
+    first = robot().compile("tau")(*STATE)
+    (entry,) = entries(folder)
+    again = robot().compile("tau")(*STATE)
+    np.testing.assert_array_equal(again, first)
+    assert (entries(folder), len(compiled)) == ([entry], 1)
+
+
+def test_another_process_compiles_nothing_and_computes_the_same_bits(folder: Path) -> None:
+    mine = robot().compile(("tau", "n"))(*STATE)
+    text = in_another_process("""
+def emit(self, program):
+    raise AssertionError("compiled again")
+LlvmEmitter.emit = emit
+result = robot().compile(("tau", "n"))(*STATE)
+print(result["tau"].tobytes().hex(), result["n"].tobytes().hex())
+assert "rttrr_pin.compile.emit.llvm_driver" not in sys.modules  # what compiles is not even loaded
+""")
+    assert text.split() == [mine[name].tobytes().hex() for name in ("tau", "n")]
+
+
+def truncate(entry: Path) -> None:
+    entry.write_bytes(entry.read_bytes()[:-1])
+
+
+def flip(place: int) -> Callable[[Path], None]:
+    def damage(entry: Path) -> None:
+        data = bytearray(entry.read_bytes())
+        data[place] ^= 1
+        entry.write_bytes(data)
+
+    return damage
+
+
+def of_another_robot(entry: Path) -> None:
+    """A whole and sound entry, but not this one's: a copy that went wrong, or a file system that did."""
+    robot(mass=7.0).compile("tau")(*STATE)
+    (other,) = (path for path in entries(entry.parent) if path != entry)
+    other.replace(entry)
+
+
+DAMAGE: dict[str, Callable[[Path], Any]] = {
+    "truncated": truncate,
+    "half": lambda entry: entry.write_bytes(entry.read_bytes()[: entry.stat().st_size // 2]),
+    "digest-alone": lambda entry: entry.write_bytes(entry.read_bytes()[: cache.DIGEST]),
+    "empty": lambda entry: entry.write_bytes(b""),
+    "longer": lambda entry: entry.write_bytes(entry.read_bytes() + b"\0"),
+    "first-bit": flip(0),
+    "a-bit-of-the-code": flip(cache.DIGEST + 100),
+    "last-bit": flip(-1),
+    "foreign": lambda entry: entry.write_text("not machine code at all" * 100),
+    "zeros": lambda entry: entry.write_bytes(bytes(entry.stat().st_size)),
+    "of-another-robot": of_another_robot,
+}
+
+
+@pytest.mark.parametrize("case", DAMAGE)
+def test_a_damaged_entry_is_made_anew(folder: Path, compiled: list[int], case: str) -> None:
+    expected = robot().compile("tau")(*STATE)
+    (entry,) = entries(folder)
+    DAMAGE[case](entry)
+    compiled.clear()
+    np.testing.assert_array_equal(robot().compile("tau")(*STATE), expected)
+    assert len(compiled) == 1
+    compiled.clear()
+    np.testing.assert_array_equal(robot().compile("tau")(*STATE), expected)
+    assert not compiled
+
+
+def test_a_damaged_entry_is_gone_even_if_nothing_is_compiled(folder: Path) -> None:
+    cache.write("name", b"code")
+    truncate(folder / f"name{cache.SUFFIX}")
+    assert cache.read("name") is None
+    assert not entries(folder)
+
+
+@pytest.mark.parametrize("data", [b"", b"x", bytes(1000), os.urandom(5000)], ids=len)
+def test_what_is_written_is_read(folder: Path, data: bytes) -> None:
+    cache.write("name", data)
+    assert cache.read("name") == data
+    assert cache.read("other") is None
+
+
+def test_a_directory_in_an_entrys_place_costs_a_warning(folder: Path) -> None:
+    expected = robot().compile("tau")(*STATE)
+    (entry,) = entries(folder)
+    entry.unlink()
+    entry.mkdir()
+    with pytest.warns(CacheWarning, match="cannot be kept"):
+        np.testing.assert_array_equal(robot().compile("tau")(*STATE), expected)
+    assert not list(folder.glob("*.partial"))
+
+
+def test_an_empty_variable_means_no_folder(
+    tmp_path: Path, compiled: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv(cache.VARIABLE, "")
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "home"))
+    monkeypatch.chdir(tmp_path)
+    for _ in range(2):
+        robot().compile("tau")(*STATE)
+    assert len(compiled) == 2
+    assert not list(tmp_path.iterdir())
+
+
+def test_without_the_variable_it_is_the_users_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv(cache.VARIABLE)
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    assert cache.folder() == tmp_path / "rttrr-pin" / "kernels"
+
+
+# Folders that cannot be written
+
+
+def warned(call: Callable[[], Any]) -> list[str]:
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        call()
+    assert {each.category for each in caught} <= {CacheWarning}
+    return [str(each.message) for each in caught]
+
+
+def compile_two() -> None:
+    """Two programs of two robots."""
+    for mass, name in ((2.0, "tau"), (3.0, "mass_matrix")):
+        made = robot(mass).compile(name)
+        assert np.isfinite(made(*STATE[: 3 if name == "tau" else 1])).all()
+
+
+@pytest.mark.parametrize("below", [False, True], ids=["the-folder", "above-the-folder"])
+def test_a_file_in_place_of_the_folder_is_one_warning(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, below: bool
+) -> None:
+    file = tmp_path / "file"
+    file.write_text("mine")
+    monkeypatch.setenv(cache.VARIABLE, str(file / "kernels" if below else file))
+    messages = warned(compile_two)
+    assert len(messages) == 1
+    assert f"cannot be kept in {file}" in messages[0] and cache.VARIABLE in messages[0]
+    assert file.read_text() == "mine"
+
+
+READ_ONLY = """
+folder = os.environ["RTTRR_PIN_CACHE"]
+os.environ["RTTRR_PIN_CACHE"] = ""
+expected = robot().compile("tau")(*STATE)  # loads all that is needed, while it may be read
+os.environ["RTTRR_PIN_CACHE"] = folder
+os.mkdir(folder)
+os.chmod(folder, 0o555)
+if os.geteuid() == 0:  # whom no mode binds
+    os.setuid(65534)
+with warnings.catch_warnings(record=True) as caught:
+    warnings.simplefilter("always")
+    assert np.array_equal(robot().compile("tau")(*STATE), expected)
+    robot().compile("mass_matrix")(STATE[0])
+    robot(3.0).compile("tau")(*STATE)
+print([each.category.__name__ for each in caught])
+"""
+
+
+def test_a_read_only_folder_is_one_warning() -> None:
+    with tempfile.TemporaryDirectory() as open_to_all:  # pytest's own folders are not
+        Path(open_to_all).chmod(0o755)
+        text = in_another_process(READ_ONLY, RTTRR_PIN_CACHE=f"{open_to_all}/sealed")
+    assert text.strip() == "['CacheWarning']"
+
+
+FULL = """
+import resource
+resource.setrlimit(resource.RLIMIT_FSIZE, (1000, resource.RLIM_INFINITY))
+with warnings.catch_warnings(record=True) as caught:
+    warnings.simplefilter("always")
+    robot().compile("tau")(*STATE)
+    robot().compile("mass_matrix")(STATE[0])
+print([each.category.__name__ for each in caught], os.listdir(os.environ["RTTRR_PIN_CACHE"]))
+"""
+
+
+def test_a_full_disk_is_one_warning_and_leaves_no_remains(tmp_path: Path) -> None:
+    text = in_another_process(FULL, RTTRR_PIN_CACHE=str(tmp_path / "full"))
+    assert text.strip() == "['CacheWarning'] []"
+
+
+def test_a_read_only_folder_with_the_entry_in_it_is_no_warning(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What was compiled for all users of a machine is read, and nothing said."""
+    robot().compile("tau")(*STATE)
+
+    def refuse(*arguments: object, **names: object) -> None:
+        raise PermissionError(13, "Permission denied")
+
+    for name in ("utime", "mkdir", "unlink", "replace", "open"):
+        monkeypatch.setattr(os, name, refuse)
+    assert not warned(lambda: robot().compile("tau")(*STATE))
+
+
+# Many processes
+
+
+TOGETHER = """
+os.mkdir(os.environ["RTTRR_PIN_CACHE"])
+ready, go = os.pipe()
+children = []
+for k in range(5):
+    child = os.fork()
+    if child == 0:
+        os.close(go)
+        os.read(ready, 1)  # until the parent closes its end
+        result = robot().compile("tau")(*STATE)
+        with open(f"{os.environ['RESULTS']}/{k}", "wb") as file:
+            file.write(result.tobytes())
+        os._exit(0)
+    children.append(child)
+os.close(go)
+assert all(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0 for child in children)
+print(*os.listdir(os.environ["RTTRR_PIN_CACHE"]))
+"""
+
+
+def test_processes_that_start_at_the_same_time(tmp_path: Path) -> None:
+    results = tmp_path / "results"
+    results.mkdir()
+    names = in_another_process(TOGETHER, RTTRR_PIN_CACHE=str(tmp_path / "shared"), RESULTS=str(results)).split()
+    assert len(names) == 1 and names[0].endswith(cache.SUFFIX)
+    assert len({path.read_bytes() for path in results.iterdir()}) == 1
+    assert len(list(results.iterdir())) == 5
+
+
+# The limit
+
+
+def old(folder: Path, name: str, hours: float) -> Path:
+    path = folder / name
+    stamp = path.stat().st_mtime - 3600 * hours
+    os.utime(path, (stamp, stamp))
+    return path
+
+
+def test_entries_not_used_for_longest_are_dropped(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cache, "MOST_BYTES", 5000)
+    for hours, name in enumerate("edcba"):
+        cache.write(name, bytes(1200))
+        old(folder, name + cache.SUFFIX, 5 - hours)
+    kept = {path.stem for path in entries(folder)}
+    assert kept == set("dcba")  # four of them are 4928 bytes
+    assert cache.read("d") is not None  # the oldest, used again
+    cache.write("f", bytes(1200))
+    assert {path.stem for path in entries(folder)} == set("dbaf")
+
+
+def test_the_newest_entry_stays_whatever_its_age_says(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cache, "MOST_BYTES", 3000)
+    for name in "abcdef":
+        cache.write(name, bytes(1000))
+        assert cache.read(name) is not None
+
+
+def test_remains_of_killed_processes_are_dropped_and_those_at_work_left(folder: Path) -> None:
+    cache.write("a", b"code")
+    for name in ("dead.partial", "alive.partial"):
+        (folder / name).write_bytes(b"half")
+    old(folder, "dead.partial", 2)
+    cache.write("b", b"code")
+    assert {path.name for path in folder.iterdir()} == {"alive.partial", f"a{cache.SUFFIX}", f"b{cache.SUFFIX}"}
+
+
+def test_files_of_others_are_left_alone(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """They do not count either: a folder that holds much else still keeps programs."""
+    folder.mkdir(parents=True)
+    (folder / "thesis.tex").write_bytes(bytes(9000))
+    (folder / "sub").mkdir()
+    monkeypatch.setattr(cache, "MOST_BYTES", 3000)
+    cache.write("a", bytes(500))
+    old(folder, f"a{cache.SUFFIX}", 1)
+    cache.write("b", bytes(500))
+    assert {path.name for path in folder.iterdir()} == {"thesis.tex", "sub", f"a{cache.SUFFIX}", f"b{cache.SUFFIX}"}
+
+
+# Names of entries
+
+
+def rich() -> Model:
+    """Every kind of number that a program can depend on."""
+    rng = np.random.default_rng(0)
+    tensor = np.array([[2.0, 0.1, 0.2], [0.1, 2.5, 0.3], [0.2, 0.3, 3.0]])
+    c, s = np.cos(0.3), np.sin(0.3)
+    R = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
+    axis = np.array([0.6, 0.0, 0.8])
+    links = tuple(Link(f"link_{i}", 1.0 + i, rng.uniform(-1, 1, 3), tensor + i * np.eye(3)) for i in range(3))
+    drive = Drive(0.1, 0.2, 0.3)
+    joints = (
+        Joint("a", JointType.REVOLUTE, -1, R, rng.uniform(-1, 1, 3), axis, drive=drive),
+        Joint("b", JointType.PRISMATIC, 0, R, rng.uniform(-1, 1, 3), axis, drive=drive),
+        Joint("c", JointType.REVOLUTE, 1, R, rng.uniform(-1, 1, 3), axis, mimic=Mimic(0, 0.5, 0.25), drive=drive),
+    )
+    return Model("rich", Link("base"), links, joints)
+
+
+def nudged(array: np.ndarray) -> Iterator[np.ndarray]:
+    """Each number moved to the next double."""
+    for index in np.ndindex(array.shape):
+        changed = array.copy()
+        changed[index] = np.nextafter(changed[index], np.inf)
+        yield changed
+
+
+def nudged_fields(item: Any, arrays: Sequence[str], numbers: Sequence[str] = ()) -> Iterator[Any]:
+    for name in arrays:
+        for changed in nudged(getattr(item, name)):
+            yield replace(item, **{name: changed})
+    for name in numbers:
+        yield replace(item, **{name: float(np.nextafter(getattr(item, name), np.inf))})
+
+
+def neighbours(model: Model) -> Iterator[Model]:
+    """The model with one number, type or parent changed at a time."""
+    for gravity in nudged(model.gravity):
+        yield model.with_gravity(gravity)
+    for i, (link, joint) in enumerate(zip(model.links, model.joints, strict=True)):
+        links = list(nudged_fields(link, ("com",), ("mass",)))
+        for a, b in itertools.combinations_with_replacement(range(3), 2):
+            tensor = link.inertia.copy()
+            tensor[a, b] = tensor[b, a] = np.nextafter(tensor[a, b], np.inf)
+            links.append(replace(link, inertia=tensor))
+        joints = list(nudged_fields(joint, ("R", "p", "axis")))
+        names = [field.name for field in fields(Drive)]
+        joints += [replace(joint, drive=drive) for drive in nudged_fields(joint.drive, (), names)]
+        joints += [replace(joint, drive=Drive(0.3, 0.1, 0.2))]
+        if joint.mimic is not None:
+            joints += [replace(joint, mimic=x) for x in nudged_fields(joint.mimic, (), ("multiplier", "offset"))]
+            joints += [replace(joint, mimic=replace(joint.mimic, joint=1)), replace(joint, mimic=None)]
+        joints += [replace(joint, type=kind) for kind in JointType if kind.rotates and kind is not joint.type]
+        joints += [replace(joint, parent=parent) for parent in range(-1, i) if parent != joint.parent]
+        for changed in links:
+            yield replace(model, links=(*model.links[:i], changed, *model.links[i + 1 :]))
+        for other in joints:
+            yield replace(model, joints=(*model.joints[:i], other, *model.joints[i + 1 :]))
+    yield replace(model, links=model.links[:2], joints=model.joints[:2])
+    yield replace(model, links=model.links[::-1])
+    yield model.with_floating_base()
+    yield model.without_drives()
+
+
+def test_every_number_of_a_robot_is_in_its_fingerprint() -> None:
+    models = [rich(), *neighbours(rich())]
+    prints = [fingerprint(model) for model in models]
+    assert len(models) > 100
+    assert len(set(prints)) == len(prints)
+    assert fingerprint(rich()) == prints[0]
+
+
+def test_names_and_limits_make_no_other_program() -> None:
+    model = rich()
+    renamed = replace(model, name="other", links=tuple(replace(link, name=f"{link.name}_") for link in model.links))
+    assert fingerprint(renamed) == fingerprint(model)
+
+
+@pytest.fixture
+def asked(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """Names of the entries that were looked for."""
+    names: list[str] = []
+    read = cache.read
+    monkeypatch.setattr(cache, "read", lambda name: (names.append(name), read(name))[1])
+    return names
+
+
+def test_outputs_payloads_and_emitters_never_share_an_entry(asked: list[str]) -> None:
+    model = rich()
+    empty = np.zeros((0, 2))
+    ways = [("tau",), ("tau", "F"), ("F", "tau"), ("F",), ("f",), ("dtau_dq",), ("dtau_dv",), ("dtau_dq", "dtau_dv")]
+    for outputs in ways:
+        Robot(model).compile(outputs, "numpy")(empty, empty, empty)
+    payloads: list[list[Wrench]] = [
+        [Wrench((0, 0, 0), link=link, expressed_in=axes) for link, axes in slots]  # type: ignore[arg-type]
+        for count in (1, 2)
+        for slots in itertools.product(itertools.product(("link_0", "link_1"), ("link", "base")), repeat=count)
+    ]
+    for payload in payloads:
+        Robot(model).compile("tau", "numpy")(empty, empty, empty, payload=payload)
+    assert len(set(asked)) == len(asked) == len(ways) + len(payloads)
+
+
+def test_the_processor_and_the_compiler_are_in_the_name(asked: list[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    """A home folder may be shared by machines that differ."""
+    for name in ("llvm", "numpy"):
+        robot().compile("tau", name)(*STATE)
+    monkeypatch.setenv("NUMBA_CPU_NAME", "generic")
+    monkeypatch.setenv("NUMBA_CPU_FEATURES", "")
+    other = LlvmEmitter()
+    assert other.identity != robot().compile("tau")._emitter.identity
+    assert len(set(asked)) == 2
+
+
+@pytest.mark.parametrize(
+    "parts", [("ab", "c"), ("a", "bc"), ("abc",), ("", "abc"), ("abc", ""), ("ab", "c", "")], ids=repr
+)
+def test_parts_of_a_name_do_not_run_into_each_other(parts: tuple[str, ...]) -> None:
+    others = [("ab", "c"), ("a", "bc"), ("abc",), ("", "abc"), ("abc", ""), ("ab", "c", "")]
+    assert [cache.key(*other) == cache.key(*parts) for other in others].count(True) == 1
+    assert len(cache.key(*parts)) == 40

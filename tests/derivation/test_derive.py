@@ -1,0 +1,620 @@
+"""Closed forms: what is derived, how it is presented, and every output read again, compiled, and held against Pinocchio."""
+
+from __future__ import annotations
+
+import ctypes
+import itertools
+import subprocess
+from dataclasses import replace
+from fractions import Fraction
+from functools import cache
+from pathlib import Path
+from typing import Any
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+import pinocchio as pin
+import pytest
+
+import rttrr_pin
+from rttrr_pin import Drive, Robot, Wrench
+from rttrr_pin import derivation as symbolic
+from rttrr_pin.cli import main
+from rttrr_pin.compile.emit.c import compiler
+from rttrr_pin.core.joint import Joint, JointType, Mimic
+from rttrr_pin.core.model import Link, Model
+from rttrr_pin.core.payload import Load
+from rttrr_pin.derivation import forms
+from rttrr_pin.derivation.collect import Presenter
+from rttrr_pin.derivation.derivation import closed_forms
+from rttrr_pin.derivation.model_terms import model_terms, names
+from rttrr_pin.derivation.motion import angles
+from rttrr_pin.derivation.ring import Ring, exact
+from rttrr_pin.derivation.symbols import Factors, Role, Terms
+from rttrr_pin.derivation.tree import Power, Product, Sum
+from rttrr_pin.derivation.writers import WRITERS, mathematics
+from rttrr_pin.derivation.writers.printing import Notation
+from rttrr_pin.derivation.writers.printing import lines as lines_of
+from rttrr_pin.derivation.writers.printing import text as text_of
+from rttrr_pin.implementations import make_oracle
+from rttrr_pin.validation import Sampler
+from support import closed_latex
+from support.pdflatex import compiled
+from support.serial_chains import EXAMPLES, random_chain
+from support.tolerances import ROUNDING, norm_error
+from support.trees import random_tree
+
+ROOT = Path(__file__).parents[2]
+STATES = 12
+ALL = tuple(symbolic.SUBJECTS)
+OF_LINKS = ("F", "N", "f", "n")
+ONE_AXIS = ("revolute", "continuous", "prismatic", "fixed")
+
+ROBOTS: dict[str, tuple[str, str]] = {
+    "rttrr": ("rttrr", "fixed"),
+    "trtrr": ("trtrr", "fixed"),
+    "any-axes": (random_chain(1, ("revolute", "prismatic", "revolute", "continuous")), "fixed"),
+    "two-joints": (random_chain(8, ("continuous", "fixed", "prismatic")), "fixed"),
+    "fixed-between": (EXAMPLES["fixed-between"], "fixed"),
+    "tree": (random_tree(17, 5, ONE_AXIS), "fixed"),
+    "tree-with-followers": (random_tree(12, 5, ONE_AXIS), "fixed"),
+    "planar-joints": (random_tree(5, 2, ("planar", "continuous"), mimics=False), "fixed"),
+    "floating-base": (random_tree(4, 2, ("revolute", "prismatic"), mimics=False), "floating"),
+}
+
+CASES = [
+    ("rttrr", "auto", "letters"),
+    ("rttrr", "stepwise", "letters"),
+    ("rttrr", "auto", "numbers"),
+    ("trtrr", "auto", "letters"),
+    ("any-axes", "auto", "letters"),
+    ("two-joints", "expanded", "letters"),
+    ("two-joints", "expanded", "numbers"),
+    ("fixed-between", "stepwise", "numbers"),
+    ("tree", "stepwise", "letters"),
+    ("tree-with-followers", "stepwise", "letters"),
+    ("planar-joints", "stepwise", "letters"),
+    ("floating-base", "stepwise", "letters"),
+]
+"""Robot, form, and whether its numbers have letters."""
+
+IDS = ["-".join(case) for case in CASES]
+
+
+@cache
+def robot(name: str) -> Robot:
+    source, base = ROBOTS[name]
+    return rttrr_pin.load(source, base=base)
+
+
+@cache
+def derived(name: str, form: str, kind: str) -> symbolic.Derivation:
+    model = robot(name).model
+    link = len(model.links) - 1
+    letters = symbolic.payload_letters(model, link) if kind == "numbers" else symbolic.default_letters(model, link)
+    return symbolic.derive(model, ALL, form, letters, link)
+
+
+@cache
+def written(case: tuple[str, str, str], language: str) -> str:
+    return WRITERS[language](derived(*case))
+
+
+@cache
+def drawn(name: str) -> tuple[Any, np.ndarray]:
+    """States, and a payload at the last link, force before moment."""
+    rng = np.random.default_rng(7)
+    return Sampler(robot(name).model, "mixed", 3).draw(0, STATES), rng.normal(size=(STATES, 6)) * 10.0
+
+
+@cache
+def pinocchios(name: str) -> dict[str, np.ndarray]:
+    """What Pinocchio says: the wrenches by the oracle; M, g and C v by its own functions where no joint follows."""
+    model = robot(name).model
+    at, payload = drawn(name)
+    load = Load(len(model.links) - 1, payload[:, :3], payload[:, 3:])
+    wrenches = make_oracle("pinocchio", model).evaluate(at.q, at.v, at.a, [load]).wrenches
+    found = {key: getattr(wrenches, key) for key in ("tau", *OF_LINKS)}
+    still = Robot(model.without_drives())
+    found["M"], found["g"] = robot(name).mass_matrix(at.q), still.gravity_torque(at.q)
+    found["Cv"] = still.nonlinear_effects(at.q, at.v) - found["g"]
+    if all(joint.mimic is None for joint in model.joints):
+        found |= _by_its_own_functions(name)
+    masses = np.array([link.mass for link in model.links])
+    found["v_dot_C"] = found["F"] / np.where(masses, masses, np.nan)[:, None]
+    return found
+
+
+def _by_its_own_functions(name: str) -> dict[str, np.ndarray]:
+    model = robot(name).model
+    root = (pin.JointModelFreeFlyer(),) if ROBOTS[name][1] == "floating" else ()
+    theirs = pin.buildModelFromXML(model.urdf, *root)
+    data, (at, _) = theirs.createData(), drawn(name)
+    M, g, Cv = [], [], []
+    for q, v in zip(_their_coordinates(name, at.q), at.v, strict=True):
+        upper = np.triu(pin.crba(theirs, data, q))
+        M.append(upper + np.triu(upper, 1).T)
+        g.append(pin.computeGeneralizedGravity(theirs, data, q).copy())
+        Cv.append(pin.computeCoriolisMatrix(theirs, data, q, v) @ v)
+    return {"M": np.array(M), "g": np.array(g), "Cv": np.array(Cv)}
+
+
+def _their_coordinates(name: str, q: np.ndarray) -> np.ndarray:
+    """Angles of planar and continuous joints as cosine and sine."""
+    columns, rest = [], list(q.T)
+    for joint in robot(name).model.moving:
+        own, rest = rest[: joint.nq], rest[joint.nq :]
+        if joint.type in (JointType.CONTINUOUS, JointType.PLANAR):
+            own = [*own[:-1], np.cos(own[-1]), np.sin(own[-1])]
+        columns += own
+    return np.stack(columns, axis=1)
+
+
+def assert_pinocchios(name: str, ours: dict[str, np.ndarray]) -> None:
+    """Every quantity, each link or all joints by their norm."""
+    theirs, (at, _) = pinocchios(name), drawn(name)
+    for key in ("tau", "M", "g"):
+        assert norm_error(ours[key], theirs[key]) <= ROUNDING, key
+    assert norm_error(np.einsum("kij,kj->ki", ours["C"], at.v), theirs["Cv"]) <= ROUNDING
+    for key in ("v_dot_C", *OF_LINKS):
+        for i in range(theirs[key].shape[1]):
+            if not np.isnan(theirs[key][:, i]).any():
+                assert norm_error(ours[key][:, i], theirs[key][:, i]) <= ROUNDING, (key, i)
+
+
+def inputs(name: str, quantity: str) -> list[np.ndarray]:
+    """What a function for the quantity takes."""
+    at, payload = drawn(name)
+    subject = symbolic.SUBJECTS[quantity]
+    return [getattr(at, x) for x in subject.inputs] + ([payload] if subject.payload else [])
+
+
+@pytest.mark.parametrize("case", CASES, ids=IDS)
+def test_python_gives_what_pinocchio_gives(case: tuple[str, str, str]) -> None:
+    module: dict[str, Any] = {}
+    exec(compile(written(case, "python"), "closed.py", "exec"), module)
+    assert_pinocchios(case[0], {key: module[key](*inputs(case[0], key)) for key in ALL})
+
+
+@pytest.mark.parametrize("case", CASES, ids=IDS)
+def test_c_compiles_without_a_warning_and_gives_what_pinocchio_gives(
+    case: tuple[str, str, str], tmp_path: Path
+) -> None:
+    source, target = tmp_path / "closed.c", tmp_path / "closed.so"
+    source.write_text(written(case, "c"))
+    flags = ("-std=c99", "-O0", "-Wall", "-Wextra", "-Werror", "-pedantic", "-fPIC", "-shared")
+    done = subprocess.run([*compiler(), *flags, "-o", target, source, "-lm"], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    library = ctypes.CDLL(str(target))
+    prefix = robot(case[0]).name
+    given = [ctypes.addressof(ctypes.c_char.in_dll(library, f"{prefix}_of_file"))] if case[2] == "letters" else []
+    ours = {}
+    for key in ALL:
+        function, rows = getattr(library, f"{prefix}_{key}"), []
+        for k in range(STATES):
+            out = np.zeros(derived(*case).quantities[key].shape)
+            arrays = [np.ascontiguousarray(x[k]) for x in inputs(case[0], key)]
+            function(*(ctypes.c_void_p(x) for x in (*given, *(x.ctypes.data for x in arrays), out.ctypes.data)))
+            rows.append(out)
+        ours[key] = np.array(rows)
+    assert_pinocchios(case[0], ours)
+
+
+def values(name: str, derivation: symbolic.Derivation) -> dict[str, np.ndarray | float]:
+    """The value of each symbol but the steps, one for each state, by what the symbol is, and not by any writer."""
+    at, payload = drawn(name)
+    found: dict[str, np.ndarray | float] = dict(derivation.robot.letters.values)
+    for letter, x in (("q", at.q), ("v", at.v), ("a", at.a)):
+        found |= {f"{letter}_{k}": column for k, column in enumerate(x.T, start=1)}
+    for angle in angles(robot(name).model):
+        q = angle.multiplier * at.q[:, angle.place - 1] + angle.offset
+        found |= {f"s_{angle.suffix}": np.sin(q), f"c_{angle.suffix}": np.cos(q)}
+    found |= {f"sign_{k}": np.sign(column) for k, column in enumerate(at.v.T, start=1)}
+    tool = ("f_tool_x", "f_tool_y", "f_tool_z", "n_tool_x", "n_tool_y", "n_tool_z")
+    return found | dict(zip(tool, payload.T, strict=True))
+
+
+READ = [(case, "latex") for case in CASES] + [(case, "markdown") for case in CASES[:4]]
+
+
+@pytest.mark.parametrize(("case", "language"), READ, ids=[f"{'-'.join(case)}-{language}" for case, language in READ])
+def test_formulas_read_again_give_what_pinocchio_gives(case: tuple[str, str, str], language: str) -> None:
+    name, derivation = case[0], derived(*case)
+    spelled = {key: symbol.latex for key, symbol in derivation.symbols.items()}
+    given = values(name, derivation)
+    found = closed_latex.values(written(case, language), spelled, given)
+    known = {spelled[key]: value for key, value in given.items()} | found
+    ours = {}
+    for key, quantity in derivation.quantities.items():
+        latex = symbolic.SUBJECTS[key].latex
+        pairs = [at[::-1] if key == "M" and at[1] < at[0] else at for at in quantity.terms]
+        columns = [np.broadcast_to(known[latex(at)], STATES) for at in pairs]
+        ours[key] = np.stack(columns, axis=-1).reshape(STATES, *quantity.shape)
+    assert_pinocchios(name, ours)
+
+
+@pytest.mark.parametrize("case", CASES, ids=IDS)
+def test_lines_fit_the_page_and_braces_balance(case: tuple[str, str, str]) -> None:
+    text = written(case, "latex")
+    assert text.count("{") - text.count(r"\{") == text.count("}") - text.count(r"\}")
+    for line in closed_latex.printed_lines(text):
+        assert mathematics.width(line.replace("&", "")) <= mathematics.ROOM, line
+    for _, side in closed_latex.equations(text):
+        assert side.count("(") == side.count(")")
+
+
+def test_a_robot_without_symbols_has_no_table_of_them() -> None:
+    """TeX takes no table without rows."""
+    still = symbolic.derive(rttrr_pin.load(EXAMPLES["no-joint"]), ["N", "M"], letters=symbolic.Letters())
+    assert r"\begin{longtable}" not in WRITERS["latex"](still)
+    assert r"\begin{longtable}" in written(CASES[0], "latex")
+
+
+STRANGE = {
+    "joint_0": "Gelenk_für 100% #1 & Co",
+    "joint_1": "ŁĦθ関節--{x}$y^2~\\\\input{z}",
+    "link_0": "arm_" * 20,
+    "link_1": '<größe>|"Σ/1"',
+}
+"""Names of a robot's file that mean something to TeX, or that its fonts have no letters for."""
+
+
+@cache
+def strangely_named() -> symbolic.Derivation:
+    text = random_tree(12, 5, ONE_AXIS).replace('name="tree_12"', 'name="Größe_1 50% #&amp;"')
+    for name, strange in STRANGE.items():
+        text = text.replace(f'"{name}"', quoteattr(strange))
+    return symbolic.derive(rttrr_pin.load(text).model, ALL, "stepwise")
+
+
+DOCUMENTS = {
+    "rttrr": lambda: derived("rttrr", "auto", "letters"),
+    "numbers": lambda: derived("two-joints", "expanded", "numbers"),
+    "any-axes": lambda: derived("any-axes", "auto", "letters"),
+    "strange names": strangely_named,
+}
+
+
+@pytest.mark.tex
+@pytest.mark.parametrize("case", DOCUMENTS)
+def test_the_document_compiles_and_fits_its_pages(case: str, tmp_path: Path) -> None:
+    """A page has some 45 lines of formulas, less where one equation ends and the next begins."""
+    text = WRITERS["latex"](DOCUMENTS[case](), "What `--latex FILE` writes.")
+    found = compiled(text, tmp_path)
+    assert max(found.overfull, default=0.0) < 3.0
+    assert text.count("\n") / 60 < found.pages < text.count("\n") / 35 + 2
+
+
+def test_names_from_a_file_stand_in_every_document() -> None:
+    """Letters of any alphabet are kept; what could end a comment, or begin a command, is not."""
+    for language, writer in WRITERS.items():
+        text = writer(strangely_named())
+        assert "für 100" in text and "関節" in text and "größe" in text, language
+        assert r"\input{z}" not in text and "{x}" not in text, language
+    assert r"Gelenk\_\allowbreak{}für 100\% \#1 \& Co" in WRITERS["latex"](strangely_named())
+
+
+def test_a_line_ends_where_few_brackets_are_open() -> None:
+    notation = Notation(str, lambda name, power: name, "*", len, "  ")
+    one = lambda *factors: Product(Fraction(1), tuple(Power(x, 1) if isinstance(x, str) else x for x in factors))
+    long, short = (Sum(tuple(one(letter) for letter in letters)) for letters in ("bcdef", "hijk"))
+    expression = Sum((one("g", Sum((one("M", long), one("N", short)))),))
+    whole = "g*(M*(b + c + d + e + f) + N*(h + i + j + k))"
+    assert text_of(expression, notation) == whole
+    assert lines_of(expression, notation, 34) == ["g*(M*(b + c + d + e + f)", "  + N*(h + i + j + k))"]
+    for room in range(10, 50):
+        found = lines_of(expression, notation, room)
+        assert all(len(line) <= room for line in found)
+        assert " ".join(line.strip() for line in found) == whole
+
+
+def test_blocks_of_markdown_are_short_enough_to_render() -> None:
+    """Browsers' renderers take some thousand characters; a line that began with + or - would be a list to Markdown."""
+    for block in written(CASES[0], "markdown").split("$$\n")[1::2]:
+        assert len(block) < 5000
+        assert not any(line.startswith(("+", "-", "#", "|")) for line in block.splitlines())
+
+
+# What is derived
+
+
+def test_the_equation_of_motion_is_the_sum_of_its_parts() -> None:
+    """Exactly, as polynomials, friction and armature included."""
+    drives = {joint: Drive(0.25, 0.5, 2.0) for joint in robot("rttrr").joint_names}
+    model = robot("rttrr").with_drives(drives).model
+    closed = closed_forms(symbolic.SymbolicRobot(model, symbolic.default_letters(model, 5), 5))
+    ring, parts = closed.robot.ring, model_terms(closed)
+    for i, tau in enumerate(closed.tau):
+        moved = [(parts.M[i][j] * closed.robot.a[j] + parts.C[i][j] * closed.robot.v[j]) for j in range(model.nv)]
+        assert tau == sum(moved, parts.g[i] + parts.payload[i] + parts.friction[i])
+        assert parts.friction[i] == ring[f"v_{i + 1}"] / 2 + 2 * ring[f"sign_{i + 1}"]
+        assert not any(
+            ring.symbols[x].role in (Role.RATE, Role.ACCELERATION, Role.PAYLOAD) for x in used(ring, parts.g[i])
+        )
+
+
+def branched() -> Model:
+    """Branches, a slide, and a joint that follows another; no rotation was rounded, so that laws hold exactly."""
+    rng = np.random.default_rng(0)
+    x, y, z = np.eye(3)
+    joints = (
+        Joint("a", JointType.REVOLUTE, -1, p=rng.normal(size=3), axis=z),
+        Joint("b", JointType.PRISMATIC, 0, p=rng.normal(size=3), axis=y),
+        Joint("c", JointType.REVOLUTE, 0, p=rng.normal(size=3), axis=x),
+        Joint("d", JointType.REVOLUTE, 2, p=rng.normal(size=3), axis=y, mimic=Mimic(0, -1.5, 0.25)),
+    )
+    links = tuple(Link(joint.name, 2.0, rng.normal(size=3), np.diag(rng.uniform(size=3))) for joint in joints)
+    return Model("branched", Link("base"), links, joints)
+
+
+@pytest.mark.parametrize("name", ["rttrr", "trtrr", "branched"])
+def test_the_rate_of_M_less_twice_C_is_skew_symmetric(name: str) -> None:
+    """Exactly: C is made of Christoffel symbols."""
+    model = branched() if name == "branched" else robot(name).model
+    closed = closed_forms(symbolic.SymbolicRobot(model, symbolic.default_letters(model)))
+    ring, parts = closed.robot.ring, model_terms(closed)
+    rates = [[rate(closed.robot, entry) for entry in row] for row in parts.M]
+    for i, j in itertools.combinations_with_replacement(range(model.nv), 2):
+        assert parts.M[i][j] == parts.M[j][i]
+        symmetric = rates[i][j] * 2 - parts.C[i][j] * 2 - parts.C[j][i] * 2
+        assert ring.reduced(symmetric) == 0
+
+
+def rate(at: symbolic.SymbolicRobot, x: Any) -> Any:
+    """The time derivative of a polynomial in coordinates, sines and cosines."""
+    ring = at.ring
+    total = sum((ring.derivative(x, q) * ring["v" + q[1:]] for q in names(ring, Role.COORDINATE)), ring.lift(0))
+    for angle in angles(at.model):
+        s, c = ring[f"s_{angle.suffix}"], ring[f"c_{angle.suffix}"]
+        by_angle = ring.derivative(x, str(s)) * c - ring.derivative(x, str(c)) * s
+        total += by_angle * ring[f"v_{angle.place}"] * exact(angle.multiplier)
+    return ring.reduced(total)
+
+
+def used(ring: Ring, x: Any) -> set[str]:
+    return {name for factors in ring.terms(x) for name, _ in factors}
+
+
+@pytest.mark.parametrize("case", [CASES[0], CASES[1], CASES[3]], ids=[IDS[0], IDS[1], IDS[3]])
+def test_every_term_has_the_dimension_of_its_quantity(case: tuple[str, str, str]) -> None:
+    """Of quantities of links, which have one; so no letter, rate or step was lost on the way."""
+    derivation = derived(*case)
+    ring = derivation.ring
+    wanted = {"v_dot_C": "m s^-2", "F": "m kg s^-2", "f": "m kg s^-2", "N": "m^2 kg s^-2", "n": "m^2 kg s^-2"}
+    for step in derivation.steps:
+        assert {ring.dimension(factors) for factors in step.terms} == {step.symbol.dimension}, step.symbol.name
+    for name, dimension in wanted.items():
+        for terms in derivation.quantities[name].terms.values():
+            assert {str(ring.dimension(factors)) for factors in terms} <= {dimension}, name
+
+
+@pytest.mark.parametrize("form", ["expanded", "stepwise"])
+def test_friction_of_a_joint_that_follows_another(form: str) -> None:
+    """Its sign is that of the other's rate, turned where the multiplier is negative."""
+    model = branched()
+    drives = [Drive(0.0 if joint.mimic else 0.1, 0.2, 0.3) for joint in model.joints]
+    joints = tuple(replace(joint, drive=drive) for joint, drive in zip(model.joints, drives, strict=True))
+    rubbing = Robot(replace(model, joints=joints))
+    module: dict[str, Any] = {}
+    exec(WRITERS["python"](symbolic.derive(rubbing, ["tau", "M"], form)), module)
+    q, v, a = np.random.default_rng(1).normal(size=(3, STATES, 3))
+    assert norm_error(module["tau"](q, v, a), rubbing.inverse_dynamics(q, v, a).tau) <= ROUNDING
+    assert norm_error(module["M"](q), rubbing.mass_matrix(q)) <= ROUNDING
+
+
+def test_auto_writes_out_what_can_be_read_and_names_steps_else() -> None:
+    assert derived("rttrr", "auto", "letters").form == "expanded"
+    assert not derived("rttrr", "auto", "letters").steps
+    long = derived("any-axes", "auto", "letters")
+    assert (long.form, "10,000 terms" in long.reason) == ("stepwise", True)
+    assert max(len(step.terms) for step in long.steps) < 200
+
+
+def test_auto_counts_all_that_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a thousand terms no component has more, but all together do."""
+    monkeypatch.setattr(forms, "MOST_TERMS", 1000)
+    assert symbolic.derive(robot("rttrr"), ["tau"]).form == "expanded"
+    assert symbolic.derive(robot("rttrr"), ["tau", "n"]).form == "stepwise"
+
+
+def test_a_step_needs_only_steps_before_it_and_none_is_idle() -> None:
+    derivation = derived("tree-with-followers", "stepwise", "letters")
+    seen = set(derivation.symbols) - {step.symbol.name for step in derivation.steps}
+    wanted = {name for terms in derivation.all_terms() for factors in terms for name, _ in factors}
+    for step in derivation.steps:
+        assert {name for factors in step.terms for name, _ in factors} <= seen
+        assert step.symbol.name in wanted
+        seen.add(step.symbol.name)
+
+
+def test_a_letter_may_have_the_name_of_a_step() -> None:
+    """The paper calls its payload f_6, n_6, as the recursion does what crosses joint 6; here both are 4."""
+    model = robot("any-axes").model
+    letters = symbolic.default_letters(model, 3)
+    renamed = {symbol.name: replace(symbol, name=symbol.name.replace("_tool_", "_4")) for symbol in letters.symbols}
+    slots = {
+        slot: {((renamed[next(iter(x))[0][0]].name, 1),): s for x, s in [(x, next(iter(x.values())))]}
+        for slot, x in letters.slots.items()
+    }
+    paper = symbolic.Letters(
+        tuple(renamed.values()), slots, {renamed[key].name: x for key, x in letters.values.items()}
+    )
+    module: dict[str, Any] = {}
+    exec(WRITERS["python"](symbolic.derive(model, ["n"], "stepwise", paper, 3)), module)
+    assert norm_error(module["n"](*inputs("any-axes", "n")), pinocchios("any-axes")["n"]) <= ROUNDING
+
+
+def test_right_angles_written_with_few_digits_are_read_as_such_on_request() -> None:
+    here = 'xyz="0 0 0.09" rpy="{} 0 0"'
+    straight = robot("rttrr").model.urdf
+    turned, exactly = (straight.replace(here.format(0), here.format(x)) for x in ("1.5708", repr(np.pi / 2)))
+    assert turned != straight
+    model = rttrr_pin.load(turned).model
+    assert symbolic.almost_right_angles(model) == 4  # two zeros, two ones
+    assert symbolic.almost_right_angles(robot("rttrr").model) == 0
+    long, short = (symbolic.derive(model, ["tau"], "expanded", right_angles=right) for right in (False, True))
+    assert short.quantities == symbolic.derive(rttrr_pin.load(exactly), ["tau"], "expanded").quantities
+    assert long.count() > short.count()
+
+
+# How it is presented
+
+
+def expanded(ring: Ring, expression: Sum | Power) -> Any:
+    """An expression multiplied out again."""
+    if isinstance(expression, Power):
+        return ring[expression.name] ** expression.exponent
+    total = ring.lift(0)
+    for term in expression.terms:
+        product = ring.lift(term.coefficient)
+        for factor in term.factors:
+            product = product * expanded(ring, factor)
+        total += product
+    return total
+
+
+@pytest.mark.parametrize("case", [CASES[0], CASES[1], CASES[2], CASES[9]], ids=[IDS[0], IDS[1], IDS[2], IDS[9]])
+def test_expressions_multiplied_out_are_the_same_polynomials(case: tuple[str, str, str]) -> None:
+    """Exactly."""
+    derivation = derived(*case)
+    presenter, ring = Presenter(derivation.symbols), derivation.ring
+    for terms in derivation.all_terms():
+        assert ring.reduced(expanded(ring, presenter.expression(terms))) == ring.polynomial(terms)
+
+
+def factors_of(term: Product) -> Factors:
+    return tuple((factor.name, factor.exponent) for factor in term.factors if isinstance(factor, Power))
+
+
+def test_terms_are_collected_by_rates_in_a_fixed_order() -> None:
+    """Accelerations, squares of rates, products of rates, gravity, payload, what is left; each once."""
+    derivation = derived("rttrr", "auto", "letters")
+    outer = (Role.ACCELERATION, Role.RATE, Role.GRAVITY, Role.PAYLOAD)
+    expression = Presenter(derivation.symbols).expression(derivation.quantities["n"].terms[2, 2])
+    heads = [
+        " ".join(f"{name}^{power}" for name, power in factors_of(term) if derivation.symbols[name].role in outer)
+        for term in expression.terms
+    ]
+    assert heads == [
+        *(f"a_{k}^1" for k in (1, 3, 4, 5)),
+        *(f"v_{k}^2" for k in (1, 4, 5)),
+        *("v_1^1 v_3^1", "v_1^1 v_4^1", "v_1^1 v_5^1", "v_4^1 v_5^1"),
+        *("f_tool_x^1", "f_tool_y^1", "f_tool_z^1", "n_tool_x^1", "n_tool_z^1"),
+    ]
+
+
+@pytest.mark.parametrize(
+    ("polynomial", "wanted"),
+    [
+        ({"": 1, "c_4^2": -1}, {"s_4^2": 1}),
+        ({"g": 3, "g c_4^2": -3, "c_5^2": 1}, {"g s_4^2": 3, "c_5^2": 1}),
+        ({"": 1, "c_4^2": 1}, {"": 1, "c_4^2": 1}),
+        ({"": 1, "c_4^2": -1, "c_5^2": -1, "c_4^2 c_5^2": 1}, {"s_4^2 s_5^2": 1}),
+        ({"": 2, "c_4^2": -1}, {"": 2, "c_4^2": -1}),
+    ],
+)
+def test_sines_are_squared_where_that_saves_a_term(polynomial: dict[str, int], wanted: dict[str, int]) -> None:
+    presenter = Presenter(derived("rttrr", "auto", "letters").symbols)
+    assert presenter.shortest(terms(polynomial)) == terms(wanted)
+
+
+def terms(polynomial: dict[str, int]) -> Terms:
+    """Products such as "g c_4^2" with their coefficients."""
+    found: Terms = {}
+    for product, coefficient in polynomial.items():
+        pairs = [word.partition("^") for word in product.split()]
+        found[tuple(sorted((name, int(power or 1)) for name, _, power in pairs))] = Fraction(coefficient)
+    return found
+
+
+def test_common_factors_stand_in_front() -> None:
+    """(g + q_3) (M_4 s_4 + M_5 c_4), and not its four terms."""
+    presenter = Presenter(derived("rttrr", "auto", "letters").symbols)
+    found = presenter.expression(terms({"M_4 p_3x s_4": 2, "M_5 p_3x c_4": 2, "M_4 q_3 s_4": 2, "M_5 q_3 c_4": 2}))
+    (term,) = found.terms
+    assert term.coefficient == 2
+    assert [len(factor.terms) for factor in term.factors if isinstance(factor, Sum)] == [2, 2]
+
+
+def test_numbers_are_read_back_as_the_same_float() -> None:
+    for x in (0.1, 1e-7, 123456.789, 2.5e20, 1 / 3, 7.02475):
+        latex = mathematics.number(Fraction(x)).replace(r" \cdot 10^{", "e").rstrip("}")
+        assert float(latex) == x
+    assert mathematics.number(Fraction(1, 2)) == r"\frac{1}{2}"
+
+
+def test_the_estimated_width_is_not_below_the_true_one() -> None:
+    """Widths in em of Computer Modern as MathJax sets it."""
+    true = {
+        r"M_5 \cdot cq_4": 3.44,
+        r"{}^5r_{C_{5x}}": 2.07,
+        r"\ddot{q}_1 + q_3": 2.99,
+        r"{}^5J_{xz}^*": 1.81,
+        r"\frac{1}{2} \cdot (M_3 - 2.5)": 6.35,
+        r"{}^3\dot{\omega}_{x,\ddot{q}_2}": 2.37,
+        r"\mathrm{sgn}(\dot{q}_{12})": 3.46,
+        r"1.5 \cdot 10^{-7} \cdot s^2q_4": 6.50,
+    }
+    for latex, width in true.items():
+        assert mathematics.width(latex) >= width
+
+
+# The page and the command
+
+
+def test_the_page_of_rttrr_is_what_the_command_writes(tmp_path: Path) -> None:
+    target = tmp_path / "model.md"
+    assert main(["derive", "--quiet", "--markdown", str(target)]) == 0
+    assert target.read_text() == (ROOT / "docs/rttrr_model.md").read_text()
+
+
+def test_the_command_says_how_long_the_forms_are(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["derive", "--quantity", "tau", "--quantity", "g"]) == 0
+    out = capsys.readouterr().out
+    assert "expanded form" in out and "--latex FILE" in out
+    total = derived("rttrr", "auto", "letters")
+    counted = sum(len(x) for name in ("tau", "g") for x in total.quantities[name].terms.values())
+    assert f"{counted} terms in all" in out
+
+
+def test_files_and_standard_output(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    files = {name: tmp_path / f"model{suffix}" for name, suffix in (("latex", ".tex"), ("python", ".py"))}
+    words = [word for name, path in files.items() for word in (f"--{name}", str(path))]
+    assert main(["derive", "trr", "--quantity", "g", "--c", "-", *words]) == 0
+    out, err = capsys.readouterr()
+    assert out.startswith("/* Dynamic model of trr") and err == ""
+    assert files["latex"].read_text().startswith("\\documentclass")
+    assert files["python"].read_text().startswith('"""Dynamic model of trr')
+    assert sorted(tmp_path.iterdir()) == sorted(files.values())
+
+
+UNUSABLE = {
+    "quantity": (["derive", "--quantity", "taus"], "no quantity is called 'taus': did you mean tau"),
+    "form": (["derive", "--form", "short"], "no form is called 'short': there are auto, expanded, stepwise"),
+    "payload": (["derive", "--payload-link", "hand"], "no link is called 'hand'"),
+    "twice": (["derive", "--latex", "-", "--c", "-"], "--latex and --c both go to standard output"),
+    "folder": (["derive", "--python", "no/such/folder/x.py"], "cannot be written"),
+    "robot": (["derive", "rttr"], "did you mean"),
+}
+
+
+@pytest.mark.parametrize("case", UNUSABLE)
+def test_unusable_input_exits_2_and_says_why(case: str, capsys: pytest.CaptureFixture[str]) -> None:
+    words, message = UNUSABLE[case]
+    assert main(words) == 2
+    out, err = capsys.readouterr()
+    assert message in err
+    assert "Traceback" not in err and out == ""
+
+
+def test_the_payload_is_that_of_robots_with_one_last_link() -> None:
+    """Through the Robot, in base axes or link axes, with the wrench that its own function takes."""
+    derivation = symbolic.derive(robot("rttrr"), ["tau"])
+    module: dict[str, Any] = {}
+    exec(WRITERS["python"](derivation), module)
+    at, payload = drawn("rttrr")
+    ours = robot("rttrr").inverse_dynamics(at.q, at.v, at.a, Wrench(payload[:, :3], payload[:, 3:])).tau
+    assert norm_error(module["tau"](at.q, at.v, at.a, payload), ours) <= ROUNDING
+    assert module["tau"](at.q[0], at.v[0], at.a[0]).shape == (5,)
+    with pytest.raises(ValueError, match=r"q has shape \(4,\), expected \(\.\.\., 5\)"):
+        module["tau"](at.q[0, :4], at.v[0], at.a[0])

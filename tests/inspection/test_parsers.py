@@ -1,0 +1,424 @@
+"""The verdict matrix against the programs themselves: Pinocchio, MuJoCo, and Drake (`pytest -m drake`).
+
+Each program loads the file, and what it made of it is compared with what the file says: degrees of freedom, masses, inertias,
+limits. A rule of ours that its program does not have, or a rule of a program that we do not have, shows as a difference.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import mujoco
+import numpy as np
+import pinocchio
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from lxml import etree
+from numpy.typing import ArrayLike
+
+import rttrr_pin
+from rttrr_pin.errors import RttrrError
+from rttrr_pin.inspection import CONSUMERS, RULES, Does, inspect
+from rttrr_pin.inspection.merged_links import lumps
+from rttrr_pin.inspection.reading import Document, read_document
+from support.inspected import arm, diagonal, inertial, joint, shape, tip
+from support.tolerances import CONSUMER, CONSUMER_AXES, SOFT
+
+GOOD = inertial(1, diagonal(1, 1, 1))
+ZERO = (0,) * 6
+FULL = ("0.5", "0.01", "-0.02", "0.4", "0.03", "0.3")
+FREEDOM = {"revolute": 1, "continuous": 1, "prismatic": 1, "planar": 3, "floating": 6, "fixed": 0}
+
+
+def leaf(name: str, parent: str, kind: str = "revolute", more: str = "") -> str:
+    """One more link."""
+    return f'<link name="{name}">{GOOD}</link>' + joint(f"{name} joint", parent, name, kind, more=more)
+
+
+def follower(how: str, kind: str = "revolute") -> str:
+    """Two moving links; the second follows the first."""
+    return arm(GOOD, extra=tip(GOOD, kind, more=f'<mimic joint="swing" {how}/>'))
+
+
+FILES = {
+    "good": arm(GOOD),
+    "full tensor": arm(inertial(2, FULL, xyz="0.1 0.2 0.3")),
+    "turned ball": arm(inertial(2, diagonal(1, 1, 1), rpy="1 2 3")),
+    "turned about its axis": arm(inertial(2, diagonal(1, 1, 0.5), rpy="0 0 1")),
+    "half a turn": arm(inertial(2, diagonal(0.5, 0.4, 0.3), rpy=f"0 {math.pi} 0")),
+    "half a turn to seven digits": arm(inertial(2, diagonal(0.5, 0.4, 0.3), rpy="3.141593 0 0")),
+    "turned base": arm(GOOD, base=inertial(2, FULL, rpy="1 2 3")),
+    "negative mass": arm(inertial(-1)),
+    "tensor without mass": arm(inertial(0)),
+    "frame that moves": arm(inertial(0, ZERO)),
+    "no inertial": arm(""),
+    "no inertial, prismatic": arm("", kind="prismatic"),
+    "point": arm(inertial(1, ZERO)),
+    "point off the axis": arm(inertial(1, ZERO, xyz="1 0 0")),
+    "point, prismatic": arm(inertial(1, ZERO), kind="prismatic"),
+    "negative mass that carries": arm(inertial(-1), extra=tip(inertial(5))),
+    "negative moment": arm(inertial(1, diagonal(-1, 1, 1))),
+    "indefinite": arm(inertial(1, (1, 2, 0, 1, 0, 1.5))),
+    "triangle": arm(inertial(1, diagonal(1, 1, 3))),
+    "triangle, full tensor": arm(inertial(1, ("1", "0.1", "0.1", "1", "0.1", "3"))),
+    "triangle by a digit": arm(inertial(1, diagonal("0.10000", "0.20000", "0.30001"))),
+    "plate in floats": arm(inertial(1, diagonal(0.1, 0.2, 0.3))),
+    "plate, not in floats": arm(inertial(1, diagonal(0.1, 0.7, 0.8))),
+    "rod": arm(inertial(1, diagonal(1, 1, 0))),
+    **{f"ball, {power}": arm(inertial(1, diagonal(*[f"1e{power}"] * 3))) for power in (-18, -16, -15, -13, -12, 3, 6)},
+    **{f"triangle, {power}": arm(inertial(1, diagonal(f"1e{power}", f"1e{power}", f"3e{power}")))
+       for power in (-18, -15, -14, -12, 6)},
+    "tiny mass": arm(inertial("1e-16")),
+    "no limit": arm(GOOD, limit=""),
+    "no limit, prismatic": arm(GOOD, limit="", kind="prismatic"),
+    "no limit, continuous": arm(GOOD, limit="", kind="continuous"),
+    "no effort": arm(GOOD, limit='<limit lower="-1" upper="1" velocity="1"/>'),
+    "no velocity, continuous": arm(GOOD, limit='<limit effort="1"/>', kind="continuous"),
+    "no range": arm(GOOD, limit='<limit effort="1" velocity="1"/>'),
+    "no lower": arm(GOOD, limit='<limit upper="1" effort="1" velocity="1"/>'),
+    "no upper": arm(GOOD, limit='<limit lower="-1" effort="1" velocity="1"/>'),
+    "zero range": arm(GOOD, limit='<limit lower="0" upper="0" effort="1" velocity="1"/>'),
+    "empty range": arm(GOOD, limit='<limit lower="0.5" upper="0.5" effort="1" velocity="1"/>'),
+    "range from above to below": arm(GOOD, limit='<limit lower="1" upper="-1" effort="1" velocity="1"/>'),
+    "empty range, continuous": arm(GOOD, limit='<limit lower="0" upper="0" effort="1" velocity="1"/>', kind="continuous"),
+    "half a range, continuous": arm(GOOD, limit='<limit upper="1" effort="1" velocity="1"/>', kind="continuous"),
+    "mass on the base": arm(GOOD, base=inertial()),
+    "negative mass on the base": arm(GOOD, base=inertial(-1)),
+    "triangle on the base": arm(GOOD, base=inertial(1, diagonal(1, 1, 3))),
+    "point on the base": arm(GOOD, base=inertial(1, ZERO)),
+    "tensor without mass on the base": arm(GOOD, base=inertial(0)),
+    "fixed tip": arm(GOOD, extra=tip(inertial(0.5))),
+    "fixed tip, only shifted": arm(GOOD, extra=tip(inertial(2, diagonal(0.5, 0.4, 0.3), xyz="0 0 1"), origin='<origin xyz="0.1 0 0"/>')),
+    "fixed tip on a frame": arm("", extra=tip(inertial(0.5))),
+    "fixed tip, triangle": arm(GOOD, extra=tip(inertial(1, diagonal(1, 1, 3)))),
+    "fixed tip, negative mass": arm(GOOD, extra=tip(inertial(-0.1))),
+    "fixed tip, more negative mass than the arm has": arm(GOOD, extra=tip(inertial(-2))),
+    "fixed tip, tensor without mass": arm(GOOD, extra=tip(inertial(0))),
+    "fixed tip, tensor with a tiny mass": arm(GOOD, extra=tip(inertial("1e-16"))),
+    "fixed tip, tiny mass": arm(GOOD, extra=tip(inertial("1e-14"))),
+    "fixed tip, point": arm(GOOD, extra=tip(inertial(1, ZERO))),
+    "fixed tip, frame": arm(GOOD, extra=tip("")),
+    "tip makes up for the arm": arm(inertial(1, diagonal(1, 1, 3)), extra=tip(inertial(1, diagonal(5, 5, 5)))),
+    "frame that carries mass": arm("", extra=tip(GOOD, kind="revolute")),
+    "planar": arm(GOOD, limit="", kind="planar"),
+    "floating": arm(GOOD, limit="", kind="floating"),
+    "floating on what floats": arm(GOOD, limit="", kind="floating", extra=tip(GOOD, kind="floating")),
+    "floating on a frame that moves": arm(GOOD, extra=tip("") + leaf("hand", "tip", "floating")),
+    "floating on a fixed base": arm("", limit="", kind="fixed", extra=tip(GOOD, kind="floating")),
+    "shape instead of mass": arm(shape('<sphere radius="0.1"/>')),
+    "drawing instead of mass": arm(shape('<sphere radius="0.1"/>', role="visual")),
+    "shape and no mass": arm(inertial(0, ZERO) + shape('<sphere radius="0.1"/>')),
+    "shape on the tip": arm(GOOD, extra=tip(shape('<sphere radius="0.1"/>'))),
+    "shape on the base": arm(GOOD, base=shape('<sphere radius="0.1"/>')),
+    "mimic": follower('multiplier="2"'),
+    "mimic with an offset": follower('multiplier="2" offset="0.5"'),
+    "mimic of nothing": follower('multiplier="0"'),
+    "mimic that stands": follower('multiplier="0" offset="0.3"'),
+    "mimic, prismatic": follower('multiplier="-1"', kind="prismatic"),
+    "mimic, continuous": follower("", kind="continuous"),
+    "mimic of one that follows": arm(GOOD, extra=tip(GOOD, "revolute", more='<mimic joint="swing"/>')
+                                     + leaf("hand", "tip", more='<mimic joint="hold" multiplier="3"/>')),
+    "mimic, and a turned tensor": arm(inertial(2, FULL, rpy="1 2 3"),
+                                      extra=tip(GOOD, "revolute", more='<mimic joint="swing"/>')),
+    "mimic on a fixed joint": arm(GOOD, extra=tip(GOOD, more='<mimic joint="swing" multiplier="2"/>')),
+}  # fmt: skip
+"""Files for each rule, and for both sides of each threshold."""
+
+SINCE = {
+    "small products": ((3, 14), arm(inertial(1, ("2e-9", "9e-13", "0", "2e-9", "0", "3e-9")))),
+    "turned": ((3, 14), arm(inertial(2, diagonal(0.5, 0.4, 0.3), rpy="1 2 3"))),
+    "turned, full tensor": ((3, 14), arm(inertial(2, FULL, xyz="0.1 0.2 0.3", rpy="1 2 3"))),
+    "a quarter turn": ((3, 14), arm(inertial(2, diagonal(0.5, 0.4, 0.3), rpy=f"0 0 {math.pi / 2}"))),
+    "half a turn, full tensor": ((3, 14), arm(inertial(2, FULL, rpy=f"0 0 {math.pi}"))),
+    "half a turn to three digits": ((3, 14), arm(inertial(2, diagonal(0.5, 0.4, 0.3), rpy="3.14 0 0"))),
+    "turned tip": ((3, 14), arm(GOOD, extra=tip(inertial(2, diagonal(0.5, 0.4, 0.3), rpy="1 2 3"), origin=""))),
+    "continuous with a range": ((4, 0), arm(GOOD, kind="continuous")),
+}
+"""Files that MuJoCo reads as written from a version on, and alters before."""
+
+SHIFT = '<origin xyz="0.1 0 0"/>'
+BAR = inertial(2, diagonal(0.5, 0.4, 0.3), xyz="0.1 0 0.2")
+MERGED = {
+    "turned": ((3, 11), arm(GOOD, extra=tip(BAR))),
+    "turned, on a frame": ((3, 11), arm("", extra=tip(BAR))),
+    "turned ball": ((3, 11), arm(GOOD, extra=tip(inertial(2, diagonal(1, 1, 1), xyz="0.1 0 0.2")))),
+    "principal axes": ((3, 11), arm(GOOD, extra=tip(inertial(2, FULL), origin=SHIFT))),
+    "order of moments": ((3, 11), arm(GOOD, extra=tip(inertial(2, diagonal(0.3, 0.4, 0.5)), origin=SHIFT))),
+    "through a frame": (
+        (3, 11),
+        arm(GOOD, extra=tip("") + f'<link name="end">{BAR}</link>' + joint("e", "tip", "end", "fixed")),
+    ),
+    "only turned": ((3, 6), arm(GOOD, extra=tip(inertial(2, diagonal(0.5, 0.4, 0.3)), origin='<origin rpy="1 2 3"/>'))),
+}
+"""Fixed links that MuJoCo merges wrongly in the versions from 3.3.3 on, and the first that does not."""
+
+UNDECIDED = {
+    "small products of a small tensor": arm(inertial(1, ("2e-12", "9e-13", "0", "2e-12", "0", "3e-12"))),
+    "plate, turned": arm(inertial(1, ("0.25", "0.05", "0", "0.25", "0", "0.5"))),
+}
+"""Where a program's rounding decides."""
+
+VERSION = tuple(int(part) for part in mujoco.__version__.split("."))
+
+
+def near(x: ArrayLike, y: ArrayLike) -> bool:
+    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    return bool(np.linalg.norm(x - y) <= CONSUMER * np.linalg.norm(y))
+
+
+def freedom(document: Document) -> int:
+    return sum(FREEDOM[joint.type] for joint in document.joints if joint.mimics is None)
+
+
+def moments(tensor: ArrayLike) -> np.ndarray:
+    return np.linalg.eigvalsh(np.asarray(tensor))
+
+
+def pinocchio_does(text: str, document: Document) -> Does:
+    try:
+        model = pinocchio.buildModelFromXML(text)
+    except ValueError:
+        return Does.REFUSE
+    same = model.nv == freedom(document)
+    for name, lump in lumps(document).items():
+        if name != document.root:
+            loaded = model.inertias[model.getJointId(document.carried_by[name].name)]
+            same &= near(loaded.mass, lump.mass) and near(moments(loaded.inertia), moments(lump.inertia))
+    return Does.ACCEPT if same else Does.ALTER
+
+
+def tensor_of(body: Any) -> np.ndarray:
+    """In link axes, about the centre of mass."""
+    R = np.empty(9)
+    mujoco.mju_quat2Mat(R, body.iquat)
+    return R.reshape(3, 3) * body.inertia @ R.reshape(3, 3).T
+
+
+def mujoco_does(text: str, document: Document) -> Does:
+    try:
+        model = mujoco.MjModel.from_xml_string(text)
+    except ValueError:
+        return Does.REFUSE
+    same = model.nv == freedom(document)
+    for name, lump in lumps(document).items():
+        if name != document.root:
+            body = model.body(name)
+            off, size = np.linalg.norm(tensor_of(body) - lump.inertia), abs(np.trace(lump.inertia))
+            same &= near(body.mass[0], lump.mass) and bool(off <= CONSUMER_AXES * size)
+            same &= not lump.mass or bool(np.linalg.norm(body.ipos - lump.first / lump.mass) <= CONSUMER)
+    for link in document.joints:
+        if link.type in ("revolute", "prismatic") and link.limit is not None:
+            wanted = (link.limit.get("lower", 0.0), link.limit.get("upper", 0.0))
+            same &= bool(model.joint(link.name).limited[0]) and near(model.joint(link.name).range, wanted)
+        same &= link.type != "continuous" or not model.joint(link.name).limited[0]
+    return Does.ACCEPT if same else Does.ALTER
+
+
+def drake_does(text: str, document: Document) -> Does:
+    import logging
+
+    from pydrake.multibody.parsing import Parser
+    from pydrake.multibody.plant import MultibodyPlant
+
+    logging.getLogger("drake").setLevel(logging.CRITICAL)
+    plant = MultibodyPlant(0.0)
+    try:
+        (instance,) = Parser(plant).AddModelsFromString(text, "urdf")
+        if document.root != "world":
+            plant.WeldFrames(plant.world_frame(), plant.GetFrameByName(document.root, instance))
+        plant.Finalize()
+    except RuntimeError:
+        return Does.REFUSE
+    same = plant.num_velocities(instance) - plant.num_constraints() == freedom(document)
+    same &= all(plant.HasJointNamed(joint.name, instance) for joint in document.joints)
+    for name, body in document.links.items():
+        if name == "world":
+            continue
+        loaded, inertial = plant.GetBodyByName(name, instance), body.inertial
+        mass = 0.0 if inertial is None else float(inertial.mass)
+        same &= near(loaded.default_mass(), mass)
+        if inertial is not None and mass > 0.0:
+            spatial = loaded.default_spatial_inertia()
+            tensor = spatial.Shift(spatial.get_com()).CalcRotationalInertia().CopyToFullMatrix3()
+            lever = mass * float(np.dot(inertial.com, inertial.com))  # added and taken away again: its digits are lost
+            same &= bool(np.linalg.norm(tensor - inertial.inertia) <= CONSUMER * (np.linalg.norm(tensor) + lever))
+    return Does.ACCEPT if same else Does.ALTER
+
+
+PROGRAMS: list = [
+    pytest.param("Pinocchio", pinocchio_does, id="Pinocchio"),
+    pytest.param("MuJoCo", mujoco_does, id="MuJoCo"),
+    pytest.param("Drake", drake_does, id="Drake", marks=pytest.mark.drake),
+]
+
+Program = Callable[[str, Document], Does]
+
+
+@pytest.mark.parametrize("name", FILES)
+@pytest.mark.parametrize(("consumer", "program"), PROGRAMS)
+def test_a_program_does_what_our_rules_say(consumer: str, program: Program, name: str) -> None:
+    assert inspect(FILES[name]).verdict(consumer).does is program(FILES[name], read_document(FILES[name], name))
+
+
+@pytest.mark.parametrize("power", range(-18, 7))
+@pytest.mark.parametrize(("consumer", "program"), PROGRAMS)
+def test_the_rules_hold_at_every_scale(consumer: str, program: Program, power: int) -> None:
+    """Consumers' tolerances have a scale, ours in physics have none."""
+    for last in ("1.5", "2", "2.5"):
+        text = arm(inertial(1, diagonal(f"1e{power}", f"1e{power}", f"{last}e{power}")))
+        assert inspect(text).verdict(consumer).does is program(text, read_document(text, "arm")), last
+
+
+@pytest.mark.parametrize("name", UNDECIDED)
+def test_where_rounding_decides_we_say_so(name: str) -> None:
+    assert inspect(UNDECIDED[name]).verdict("MuJoCo").does is Does.EITHER
+    assert mujoco_does(UNDECIDED[name], read_document(UNDECIDED[name], name)) in Does
+
+
+@pytest.mark.parametrize("name", SINCE)
+def test_where_the_version_decides_we_say_which(name: str) -> None:
+    since, text = SINCE[name]
+    verdict = inspect(text).verdict("MuJoCo")
+    (reason,) = {hit.reason for hit in verdict.hits}
+    assert verdict.does is Does.EITHER
+    assert reason.startswith(f"before version {'.'.join(map(str, since)).removesuffix('.0')},")
+    assert mujoco_does(text, read_document(text, name)) is (Does.ACCEPT if since <= VERSION else Does.ALTER)
+
+
+@pytest.mark.parametrize("name", MERGED)
+def test_the_versions_that_merge_links_wrongly_are_told(name: str) -> None:
+    until, text = MERGED[name]
+    verdict = inspect(text).verdict("MuJoCo")
+    assert verdict.does is Does.EITHER and {hit.rule for hit in verdict.hits} == {"mujoco-fused"}
+    wrong = (3, 3, 3) <= VERSION < until
+    assert mujoco_does(text, read_document(text, name)) is (Does.ALTER if wrong else Does.ACCEPT)
+
+
+angles = st.sampled_from(["0", "1", "-2.5", f"{math.pi}", f"{math.pi / 2}", f"{-math.pi}"])
+sigmas = st.sampled_from([0.1, 0.2, 0.35])
+
+
+@given(st.lists(sigmas, min_size=3, max_size=3), st.sampled_from([0, 0.05]), st.lists(angles, min_size=3, max_size=3))
+@settings(deadline=None)
+def test_the_rpy_of_a_tensor_is_told_where_it_matters(sizes: list[float], product: float, rpy: list[str]) -> None:
+    """MuJoCo has the tensor in the inertial frame's axes, or as if these were the link's; told where that differs."""
+    x, y, z = sizes
+    text = arm(inertial(2, (y + z, product, 0, x + z, 0, x + y), rpy=" ".join(rpy)))
+    mass = read_document(text, "arm").links["arm"].inertial
+    assert mass is not None
+    theirs = tensor_of(mujoco.MjModel.from_xml_string(text).body("arm"))
+    assert np.allclose(theirs, mass.inertia if VERSION >= (3, 14) else mass.written, rtol=0, atol=CONSUMER)
+    told = "mujoco-rpy" in {hit.rule for hit in inspect(text).verdict("MuJoCo").hits}
+    assert told is not np.allclose(mass.inertia, mass.written, rtol=0, atol=CONSUMER)
+
+
+@pytest.mark.parametrize("kind", ["revolute", "prismatic", "continuous"])
+@pytest.mark.parametrize(("multiplier", "offset"), [(2, 0), (-1, 0.5), (0, 0), (0, 0.3)])
+def test_mujoco_s_followers_move_by_themselves(kind: str, multiplier: float, offset: float) -> None:
+    """Before 3.13 nothing holds them; then a constraint does, which gives way to a force."""
+    model = mujoco.MjModel.from_xml_string(follower(f'multiplier="{multiplier}" offset="{offset}"', kind))
+    hold, swing = model.joint("hold").id, model.joint("swing").id
+    read = [(model.eq_type[k], model.eq_obj1id[k], model.eq_obj2id[k], *model.eq_data[k, :5]) for k in range(model.neq)]
+    constraint = (mujoco.mjtEq.mjEQ_JOINT, hold, swing, offset, multiplier, 0, 0, 0)
+    assert read == ([constraint] if VERSION >= (3, 13) else [])
+    data = mujoco.MjData(model)
+    model.opt.gravity[:] = 0.0
+    data.qpos[hold] = offset + multiplier * data.qpos[swing]
+    data.qfrc_applied[hold] = 10.0
+    for _ in range(200):
+        mujoco.mj_step(model, data)
+    assert abs(data.qpos[hold] - offset - multiplier * data.qpos[swing]) > SOFT
+
+
+def test_either_is_said_only_where_it_makes_a_difference() -> None:
+    """Of two rules the worse one counts, and an open one by its worst."""
+    turned, impossible = inertial(2, FULL, rpy="1 2 3"), inertial(1, diagonal(1, 1, 3), rpy="1 2 3")
+    assert inspect(arm(turned)).verdict("MuJoCo").does is Does.EITHER
+    assert inspect(arm(turned, limit="")).verdict("MuJoCo").does is Does.EITHER
+    assert inspect(FILES["mimic, and a turned tensor"]).verdict("MuJoCo").does is Does.ALTER
+    assert inspect(arm(impossible)).verdict("MuJoCo").does is Does.REFUSE
+    plate = arm(
+        inertial(1, ("0.25", "0.05", "0", "0.25", "0", "0.5")), limit='<limit upper="1" effort="1" velocity="1"/>'
+    )
+    assert inspect(plate).verdict("MuJoCo").does is Does.EITHER  # altered, or refused
+
+
+def without_shapes(text: str) -> str:
+    """What masses and joints say alone: no meshes to be found, no extensions."""
+    root = etree.fromstring(text.encode())
+    for tag in ("link/visual", "link/collision", "transmission", "gazebo"):
+        for element in root.findall(tag):
+            element.getparent().remove(element)
+    return etree.tostring(root).decode()
+
+
+def bundled_and_examples() -> dict[str, str | Path]:
+    from rttrr_pin.urdf.sources import bundled, examples
+
+    try:
+        return {**{name: name for name in bundled()}, **examples()}
+    except RttrrError:  # the extra `robots` is not installed
+        return {name: name for name in bundled()}
+
+
+@pytest.mark.parametrize(("consumer", "program"), PROGRAMS)
+def test_the_rules_hold_for_real_robots(consumer: str, program: Program) -> None:
+    wrong, seen = {}, 0
+    for name, source in bundled_and_examples().items():
+        try:
+            text = without_shapes(rttrr_pin.load(source).model.urdf)
+        except RttrrError:  # no URDF that the strict reader takes
+            continue
+        ours, theirs = inspect(text).verdict(consumer).does, program(text, read_document(text, name))
+        seen += 1
+        if ours is not theirs and ours is not Does.EITHER:
+            wrong[name] = (str(ours), str(theirs))
+    assert seen >= 5
+    assert wrong == {}
+
+
+# Consumers that are not run
+
+
+@pytest.mark.parametrize(
+    ("text", "gazebo", "kdl"),
+    [
+        (arm(GOOD, base=GOOD), "accept", "alter"),
+        (arm(GOOD), "refuse", "accept"),
+        (arm("", base=GOOD), "alter", "alter"),
+        (arm("", base=GOOD, extra=tip(GOOD)), "accept", "alter"),
+        (arm(inertial(1, diagonal(1, 1, 3)), base=GOOD), "refuse", "alter"),
+        (arm(inertial(1, diagonal(1, 1, 3)), base=GOOD, extra=tip(inertial(1, diagonal(5, 5, 5)))), "accept", "alter"),
+        (arm(inertial(1, diagonal(0.1, 0.7, 0.8)), base=GOOD), "accept", "alter"),
+        (arm(inertial(1, ("0.25", "0.05", "0", "0.25", "0", "0.5")), base=GOOD), "either", "alter"),
+        (arm(GOOD, limit=""), "refuse", "refuse"),
+        (arm(GOOD, limit="", kind="planar", base=GOOD), "alter", "alter"),
+        (arm(GOOD).replace('"base"', '"world"'), "accept", "accept"),
+        (
+            f'<robot name="r"><link name="world"/><link name="a">{GOOD}</link>{joint("j", "world", "a", "fixed")}</robot>',
+            "accept",
+            "accept",
+        ),
+    ],
+)
+def test_gazebo_and_kdl_by_their_sources(text: str, gazebo: str, kdl: str) -> None:
+    result = inspect(text)
+    assert (result.verdict("Gazebo").does, result.verdict("KDL").does) == (gazebo, kdl)
+
+
+def test_every_rule_is_met_by_a_file_and_has_a_source() -> None:
+    more = [
+        *FILES.values(),
+        *UNDECIDED.values(),
+        *(text for _, text in SINCE.values()),
+        *(text for _, text in MERGED.values()),
+        arm(inertial(1, ("0.25", "0.05", "0", "0.25", "0", "0.5")), base=GOOD),
+    ]
+    more.append(arm(inertial(1, diagonal("1e-18", "1e-18", f"{2e-18 + 16 * 2.220446049250313e-16!r}"))))
+    met = {hit.rule for text in more for verdict in inspect(text).verdicts for hit in verdict.hits}
+    assert met == {rule.id for rule in RULES}
+    assert all(":" in rule.source and set(rule.consumers) <= set(CONSUMERS) for rule in RULES)

@@ -1,0 +1,111 @@
+"""Several robots in one run: none is left out, and the verdicts are theirs."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from rttrr_pin.cli import main
+from rttrr_pin.errors import InputError, UnknownNameError
+from rttrr_pin.validation import Task, validate_many
+from support.serial_chains import EXAMPLES
+
+BROKEN = '<robot name="x"><link name="a"><inertial><mass value="1,5"/></inertial></link></robot>'
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    for name in ("any-axes", "fixed-between"):
+        (tmp_path / f"{name}.urdf").write_text(EXAMPLES[name])
+    return tmp_path
+
+
+def test_every_robot_has_a_row_for_each_base(folder: Path) -> None:
+    (folder / "broken.urdf").write_text(BROKEN)
+    sources = {path.stem: path for path in sorted(folder.glob("*.urdf"))}
+    entries = validate_many(sources, Task(states=30))
+    assert [(entry.name, entry.base) for entry in entries] == [
+        (name, base) for name in sources for base in ("fixed", "floating")
+    ]
+    assert [entry.verdict for entry in entries] == ["agree"] * 2 + ["unusable"] * 2 + ["agree"] * 2
+    assert all("'1,5' is not a decimal number" in entry.defect for entry in entries if entry.name == "broken")
+    assert all(entry.share > 0 and entry.worst for entry in entries if entry.name != "broken")
+
+
+def test_the_outcome_does_not_depend_on_the_workers(folder: Path) -> None:
+    sources = {path.stem: path for path in sorted(folder.glob("*.urdf"))}
+    outcomes = [
+        [
+            (entry.name, entry.base, entry.eps, entry.share, entry.worst)
+            for entry in validate_many(sources, Task(states=40), workers=workers)
+        ]
+        for workers in (1, 2)
+    ]
+    assert outcomes[0] == outcomes[1]
+
+
+@pytest.mark.parametrize(
+    ("task", "error", "message"),
+    [
+        (Task(states=0), InputError, "states is 0"),
+        (Task(family="gauss"), UnknownNameError, "no family"),
+        (Task(oracle="bullet"), UnknownNameError, "no oracle"),
+    ],
+    ids=["states", "family", "oracle"],
+)
+def test_what_is_wrong_for_all_is_said_once(folder: Path, task: Task, error: type[Exception], message: str) -> None:
+    with pytest.raises(error, match=message):
+        validate_many({"x": folder / "any-axes.urdf"}, task)
+
+
+def test_a_folder_on_the_command_line(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["validate", str(folder), "--states", "20"]) == 0
+    out = capsys.readouterr().out
+    assert "4 agree, 0 disagree, 0 stopped by their file, 4 in all" in out
+    (folder / "broken.urdf").write_text(BROKEN)
+    assert main(["validate", str(folder), "--states", "20", "--json", "-"]) == 2
+    data = json.loads(capsys.readouterr().out)
+    assert data["verdicts"] == {"agree": 4, "disagree": 0, "unusable": 2}
+    assert len(data["entries"]) == 6
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["--state", "3"],
+        ["--payload", "random"],
+        ["--gravity", "0,0,0"],
+        ["--friction"],
+        ["--base", "floating"],
+        ["--full"],
+    ],
+    ids=lambda words: words[0],
+)
+def test_options_of_one_robot_are_refused(folder: Path, capsys: pytest.CaptureFixture[str], words: list[str]) -> None:
+    assert main(["validate", str(folder), *words]) == 2
+    assert f"{words[0]} goes with one robot" in capsys.readouterr().err
+
+
+def test_the_bundled_arms_all_agree(repository: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["validate", str(repository / "urdf"), "--states", "200"]) == 0
+    assert "10 agree" in capsys.readouterr().out
+
+
+def test_the_saved_run_accounts_for_all_example_robots(repository: Path) -> None:
+    """69 files, two bases each, 10,000 states; what was not compared is named with its defect."""
+    result = json.loads((repository / "benchmarks/results/example_robots.json").read_text())
+    assert result["files"] == 69
+    assert len(result["entries"]) == 138
+    assert result["states"] == 10_000
+    assert {entry["verdict"] for entry in result["entries"]} == {"agree", "unusable"}
+    stopped = [entry for entry in result["entries"] if entry["verdict"] == "unusable"]
+    without_joint = [entry for entry in stopped if "has no joint" in entry["defect"]]
+    assert {entry["base"] for entry in without_joint} <= {"fixed"}  # one body: it agrees on its floating base
+    assert all(", line " in entry["defect"] for entry in stopped if entry not in without_joint)
+    assert len({entry["name"] for entry in stopped}) <= 3
+    trees = json.loads((repository / "benchmarks/results/random_trees.json").read_text())
+    assert trees["trees"] == 1000
+    assert trees["disagree"] == []
+    assert {"planar", "floating", "fixed", "prismatic", "revolute following"} <= set(trees["joint_types"])
