@@ -211,7 +211,7 @@ def _joint(xml: Any, joint: Any, model: Any, joints: Any) -> Iterator[str]:
     yield from _limits(kind, limit, joint.limits)
     dynamics = only(xml, "dynamics")
     for name in ("damping", "friction"):
-        yield from _same(name, [getattr(joint.drive, name)], numbers(dynamics, name, 1, "0"))
+        yield from _same(name, [getattr(joint.effects, name)], numbers(dynamics, name, 1, "0"))
     if only(xml, "mimic") is not None and kind != "fixed":
         yield from _mimic(xml, joint, model, joints)
     elif joint.mimic is not None:

@@ -24,7 +24,7 @@ from common import arguments, finish
 from rttrr_pin import Robot
 from rttrr_pin.compile import Kernel, cache
 from rttrr_pin.compile.build import STRAIGHT_LINE, build
-from rttrr_pin.compile.call_program import Schedule
+from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.validation import Sampler
 
 sys.path.append(str(Path(__file__).parents[1] / "tests"))
@@ -81,7 +81,7 @@ class Timed:
         error = np.linalg.norm(ours - reference, axis=1) / np.linalg.norm(reference, axis=1)
         self.figures["worst_eps"] = round(float(error.max()) / sys.float_info.epsilon, 1)
         program = build(self.robot.model, ["tau"], straight_line=self.straight_line)
-        by_calls = isinstance(program, Schedule)
+        by_calls = isinstance(program, CallProgram)
         self.figures["kind"] = "calls" if by_calls else "lines"
         self.figures["operations"] = program.operations if by_calls else program.operations.total
 

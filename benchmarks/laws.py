@@ -16,7 +16,7 @@ from pathlib import Path
 
 import rttrr_pin
 from common import arguments, finish
-from rttrr_pin.core.joint import Drive
+from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.laws import check_laws
 
 sys.path.append(str(Path(__file__).parents[1] / "tests"))
@@ -33,8 +33,8 @@ def one(job: tuple[int, int]) -> tuple[int, str, dict[str, tuple[float, int, int
     base = BASES[seed // LARGEST % 2]
     robot = rttrr_pin.load(random_tree(seed, 1 + seed % LARGEST), base=base)  # type: ignore[arg-type]
     moving = [joint for joint in robot.model.joints if joint.nv]
-    robot = robot.with_drives(
-        {joint.name: Drive(0.25, joint.dynamics.damping, joint.dynamics.friction) for joint in moving}
+    robot = robot.with_joint_effects(
+        {joint.name: JointEffects(0.25, joint.dynamics.damping, joint.dynamics.friction) for joint in moving}
     )
     report = check_laws(robot, states, seed, "mixed")
     seen = {row.law.id: (row.share.value, row.violations, row.numbers * states) for row in report.rows}

@@ -40,12 +40,12 @@ ROBOTS = ("rttrr", "example:ur5_robot", "example:panda", "example:talos_reduced"
 
 def counts(model: Model) -> dict[str, dict[str, int]]:
     """Operations as traced, with inertia lumped, with sums collected, and as compiled."""
-    lumped = trace(model, ["tau"])
+    regrouped = trace(model, ["tau"])
     programs = {
-        "traced": trace(model, ["tau"], lumped=False),
-        "lumped": lumped,
-        "collected": collect(lumped),
-        "compiled": simplify(lumped),
+        "traced": trace(model, ["tau"], regrouped=False),
+        "lumped": regrouped,
+        "collected": collect(regrouped),
+        "compiled": simplify(regrouped),
     }
     return {name: _of(program) for name, program in programs.items()}
 

@@ -48,16 +48,16 @@ def bounds() -> list[str]:
 
 
 def errors() -> list[str]:
-    settled = result("umpire")
+    adjudicated = result("umpire")
     lines = [
         f"Distance from the true value in eps of the norm of the true vector, of the link that is farthest off, in "
-        f"{settled['states']:,} uniform states ({machine(settled)}; `python benchmarks/umpire.py`): median / 99.9 % / "
-        "worst.",
+        f"{adjudicated['states']:,} uniform states ({machine(adjudicated)}; `python benchmarks/umpire.py`): "
+        "median / 99.9 % / worst.",
         "",
         "| | | ours | Pinocchio | states in which ours is nearer; farther |",
         "|---|---|---|---|---|",
     ]
-    for name, robot in settled["robots"].items():
+    for name, robot in adjudicated["robots"].items():
         found = robot["errors_eps"]
         for quantity, ours in found["ours"].items():
             theirs = found["pinocchio"][quantity]

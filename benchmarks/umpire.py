@@ -23,7 +23,7 @@ import rttrr_pin
 from common import arguments, finish
 from rttrr_pin import Robot
 from rttrr_pin.errors import InputError
-from rttrr_pin.exact import Certificate, certify
+from rttrr_pin.exact import Enclosures, enclose
 from rttrr_pin.exact.adjudication import nearest
 from rttrr_pin.exact.enclosures import STRAIGHT_FROM
 from rttrr_pin.implementations import Evaluation, make_oracle
@@ -58,18 +58,18 @@ def errors(robot: Robot, count: int) -> dict[str, Any]:
     """Figures of each program, by quantity; of a state the largest over all links or joints."""
     drawn = Sampler(robot.model, payload=robot.link_names[-1]).draw(0, count)
     arrays = (drawn.q, drawn.v, drawn.a, drawn.loads)
-    certificate = certify(robot.model, *arrays, "read")
+    enclosures = enclose(robot.model, *arrays, "read")
     side = Ours(robot, count)
     ours, bound = side(drawn)
     theirs = make_oracle("pinocchio", robot.model).evaluate(*arrays)
     out: dict[str, Any] = {
         "our_side": side.name,
-        "bits": {str(bits): int((certificate.bits == bits).sum()) for bits in set(certificate.bits)},
+        "bits": {str(bits): int((enclosures.bits == bits).sum()) for bits in set(enclosures.bits)},
     }
     largest: dict[str, dict[str, Array]] = {}
     for program, computed in (("ours", ours), ("pinocchio", theirs.wrenches)):
         comparison = Comparison(robot.model)
-        gaps = comparison.gaps(computed, Evaluation(nearest(certificate, computed), theirs.rounding), bound)
+        gaps = comparison.gaps(computed, Evaluation(nearest(enclosures, computed), theirs.rounding), bound)
         by_quantity: dict[str, list[Array]] = {}
         for row, gap in zip(comparison.rows, gaps, strict=True):
             allowed = gap.own if program == "ours" else gap.allowance
@@ -112,8 +112,8 @@ def cost(robot: Robot) -> dict[str, float]:
     }
 
 
-def _certified(robot: Robot, drawn: States) -> Certificate:
-    return certify(robot.model, drawn.q, drawn.v, drawn.a)
+def _certified(robot: Robot, drawn: States) -> Enclosures:
+    return enclose(robot.model, drawn.q, drawn.v, drawn.a)
 
 
 def _median(work: Callable[[], object]) -> float:

@@ -7,7 +7,7 @@
 
 from __future__ import annotations
 
-from rttrr_pin.core.joint import Drive
+from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.core.wrench import LinkWrenches, Wrench
 from rttrr_pin.errors import RttrrError
 from rttrr_pin.loading import load, load_all
@@ -15,4 +15,4 @@ from rttrr_pin.robot import Robot
 
 __version__ = "0.1.0"
 
-__all__ = ["Drive", "LinkWrenches", "Robot", "RttrrError", "Wrench", "__version__", "load", "load_all"]
+__all__ = ["JointEffects", "LinkWrenches", "Robot", "RttrrError", "Wrench", "__version__", "load", "load_all"]

@@ -55,7 +55,7 @@ def load(
     model = read_urdf(source).with_gravity(field)
     if base == "floating":
         model = model.with_floating_base()
-    return Robot(model if friction else model.without_drives())
+    return Robot(model if friction else model.without_joint_effects())
 
 
 def load_all(

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from rttrr_pin.core.batch import RESULTS, batch_shape, blocks, check_overflow, empty_wrenches, fill, flat
 from rttrr_pin.core.dynamics import bodies, evaluate
 from rttrr_pin.core.inputs import Coordinates, coordinates, finite, real, vectors
-from rttrr_pin.core.joint import Drive
+from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.scalars import FLOAT
@@ -23,7 +23,7 @@ from rttrr_pin.errors import InputError, NumberError, UnknownNameError
 
 if TYPE_CHECKING:
     from rttrr_pin.compile import Kernel
-    from rttrr_pin.exact.enclosures import Certificate
+    from rttrr_pin.exact.enclosures import Enclosures
     from rttrr_pin.exact.parameters import Numbers
     from rttrr_pin.inspection import Inspection
 
@@ -81,7 +81,7 @@ class Robot:
             N_i = I_i w_dot_i + w_i x I_i w_i               (23-30)
             f_i = F_i + sum over children c of R_ic f_c     (31-43)
             n_i = N_i + r_Ci x F_i + sum over c of (R_ic n_c + p_ic x R_ic f_c)
-            tau_i = n_i (revolute) or f_i (prismatic) along the axis, plus tau_joint (see `Drive`)
+            tau_i = n_i (revolute) or f_i (prismatic) along the axis, plus tau_joint (see `JointEffects`)
 
         A joint that follows another (<mimic>) has no coordinate of its own; what drives it is part of the other's tau,
         times the multiplier.
@@ -126,18 +126,18 @@ class Robot:
         shaped = {key: getattr(out, key).reshape(*batch, *getattr(out, key).shape[1:]) for key in RESULTS}
         return LinkWrenches.of(shaped, self.link_names, self.model.v_names)
 
-    def certify(
+    def enclose(
         self,
         q: Coordinates,
         v: Coordinates,
         a: Coordinates,
         payload: Wrench | Sequence[Wrench] | None = None,
         numbers: Numbers = "doubles",
-    ) -> Certificate:
+    ) -> Enclosures:
         """Between which two doubles the true tau, F, N, f, n lie: the recursion on balls, at rising precision.
 
         The coordinates are taken as the exact doubles that they are. Every enclosure is proven, and as narrow as
-        doubles allow: one double or two neighbours, but for what is zero or nearly (see `certify.umpire.certify`).
+        doubles allow: one double or two neighbours, but for what is zero or nearly (see `enclose.umpire.enclose`).
 
         Args:
             q: joint coordinates, (..., nq) [rad or m], or a dict by joint name. A floating joint's quaternion turns by
@@ -157,10 +157,10 @@ class Robot:
             InputError: there are no such numbers: the robot has no file, or was altered since it was read.
             ShapeError, NumberError, UnknownNameError, MissingJointError: as in `inverse_dynamics`.
         """
-        from rttrr_pin.exact.enclosures import certify
+        from rttrr_pin.exact.enclosures import enclose
 
         q, v, a = (coordinates(name, x, self.model.moving) for name, x in (("q", q), ("v", v), ("a", a)))
-        return certify(self.model, q, v, a, self._loads(payload), numbers)
+        return enclose(self.model, q, v, a, self._loads(payload), numbers)
 
     def compile(self, outputs: str | Sequence[str] = "tau", emitter: str | None = None) -> Kernel:
         """Compile the robot's dynamics for this processor.
@@ -304,11 +304,11 @@ class Robot:
         f, n = vectors("payload force", wrench.force), vectors("payload moment", wrench.moment)
         return Load(self.payload_link(wrench.link), f, n, wrench.expressed_in == "base")
 
-    def with_drives(self, drives: Mapping[str, Drive]) -> Robot:
+    def with_joint_effects(self, effects: Mapping[str, JointEffects]) -> Robot:
         """The same robot, whose joints take torque themselves.
 
         Args:
-            drives: by joint name: armature (rotor inertia times gear ratio squared), damping, Coulomb friction. Joints
+            effects: by joint name: armature (rotor inertia times gear ratio squared), damping, Coulomb friction. Joints
                 left out keep what they have.
 
         Returns:
@@ -319,22 +319,24 @@ class Robot:
             NumberError: a number is not finite, or is negative.
         """
         moving = [joint.name for joint in self.model.joints if joint.nv]
-        for name, drive in drives.items():
+        for name, own in effects.items():
             if name not in moving:
                 raise UnknownNameError("moving joint", name, moving)
-            if not isinstance(drive, Drive):
-                raise InputError(f"the drive of joint {name!r} is a {type(drive).__name__}: pass Drive(armature=...)")
-            for field in fields(drive):
+            if not isinstance(own, JointEffects):
+                raise InputError(
+                    f"the entry of joint {name!r} is a {type(own).__name__}: pass JointEffects(armature=...)"
+                )
+            for field in fields(own):
                 label = f"{field.name} of joint {name!r}"
-                value = finite(label, real(label, getattr(drive, field.name)))
+                value = finite(label, real(label, getattr(own, field.name)))
                 if value.ndim or value < 0.0:
                     raise NumberError(
-                        f"{label} is {getattr(drive, field.name)}: expected one number that is not negative",
+                        f"{label} is {getattr(own, field.name)}: expected one number that is not negative",
                         name=field.name,
                         joint=name,
-                        value=getattr(drive, field.name),
+                        value=getattr(own, field.name),
                     )
-        joints = tuple(replace(joint, drive=drives.get(joint.name, joint.drive)) for joint in self.model.joints)
+        joints = tuple(replace(joint, effects=effects.get(joint.name, joint.effects)) for joint in self.model.joints)
         return Robot(replace(self.model, joints=joints))
 
     def inspect(

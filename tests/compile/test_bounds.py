@@ -12,21 +12,21 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
+from tests.exact.test_rounding import exact_dynamics
 
 import rttrr_pin
-from exact.test_rounding import exact_dynamics
 from rttrr_pin import Robot
 from rttrr_pin.compile import bounds
 from rttrr_pin.compile.build import build
-from rttrr_pin.compile.constants import Known, error_of, exactly
+from rttrr_pin.compile.constants import ConstantWithError, error_of, exactly
 from rttrr_pin.compile.emit import EMITTERS
 from rttrr_pin.compile.expression import Graph, Node, Op
-from rttrr_pin.compile.regrouping import lump
+from rttrr_pin.compile.regrouping import regroup
 from rttrr_pin.compile.simplify import collect
-from rttrr_pin.compile.trace import KNOWING, TRACING, trace
+from rttrr_pin.compile.trace import TRACING, TRACING_WITH_ERRORS, trace
 from rttrr_pin.core.dynamics import bodies
 from rttrr_pin.core.scalars import UNIT_ROUNDOFF
-from rttrr_pin.exact import bounded_dynamics, certify
+from rttrr_pin.exact import bounded_dynamics, enclose
 from rttrr_pin.validation import Sampler
 from support.serial_chains import random_chain
 from support.tolerances import ROUNDING
@@ -48,7 +48,7 @@ def test_a_known_number_s_error_covers_the_truth(x, y, e, d, at, by, operation) 
     """Wherever within their errors the operands truly lie."""
     apply = {"+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv}[operation]
     assume(operation != "/" or abs(y) > 2 * d)
-    result = apply(Known(x, e), Known(y, d))
+    result = apply(ConstantWithError(x, e), ConstantWithError(y, d))
     left, right = Fraction(x) + Fraction(e) * Fraction(at), Fraction(y) + Fraction(d) * Fraction(by)
     truth = apply(left, right)
     assert abs(Fraction(float(result)) - truth) <= Fraction(result.error) * Fraction(bounds.SLACK)
@@ -57,21 +57,29 @@ def test_a_known_number_s_error_covers_the_truth(x, y, e, d, at, by, operation) 
 
 @given(finite, finite)
 def test_exact_operations_have_no_error(x, y) -> None:
-    assert (Known(x) * 2).error == 0.0 and (0 * Known(x)).error == 0.0 and (Known(x) - x).error == 0.0
+    assert (
+        (ConstantWithError(x) * 2).error == 0.0
+        and (0 * ConstantWithError(x)).error == 0.0
+        and (ConstantWithError(x) - x).error == 0.0
+    )
     exact = Fraction(x) + Fraction(y) == Fraction(x + y)
-    assert (Known(x) + y).error == abs(float(Fraction(x) + Fraction(y) - Fraction(x + y))) and exact == (
-        not (x + Known(y)).error
+    assert (ConstantWithError(x) + y).error == abs(float(Fraction(x) + Fraction(y) - Fraction(x + y))) and exact == (
+        not (x + ConstantWithError(y)).error
     )
 
 
 def test_a_known_number_is_a_float_and_others_may_take_it_further() -> None:
-    x = Known(0.5, 0.25)
+    x = ConstantWithError(0.5, 0.25)
     assert isinstance(x, float) and x == 0.5 and abs(-x) == 0.5 and error_of(-x) == 0.25 and error_of(0.5) == 0.0
-    assert error_of(1 / Known(0.5)) == 0.0 and error_of(Known(1.0, 0.5) / 2) == 0.25 and (1 / x).error >= 2.0
-    assert (1 / Known(0.25, 0.5)).error == np.inf  # may be zero
+    assert (
+        error_of(1 / ConstantWithError(0.5)) == 0.0
+        and error_of(ConstantWithError(1.0, 0.5) / 2) == 0.25
+        and (1 / x).error >= 2.0
+    )
+    assert (1 / ConstantWithError(0.25, 0.5)).error == np.inf  # may be zero
     assert error_of(1 - x) == 0.25 and error_of(abs(x)) == 0.25
     graph = Graph()
-    node = KNOWING.column(Node(graph, graph.input(0)))
+    node = TRACING_WITH_ERRORS.column(Node(graph, graph.input(0)))
     assert graph.op[(x * node).number] is Op.MUL and graph.op[(x + node).number] is Op.ADD
 
 
@@ -79,18 +87,18 @@ def test_a_zero_with_an_error_is_no_zero() -> None:
     """An entry 0 of a rounded rotation: its value vanishes, its error stays."""
     graph = Graph()
     x = graph.input(0)
-    exact, rounded = graph.constant(0.0), graph.constant(Known(0.0, 1e-15))
+    exact, rounded = graph.constant(0.0), graph.constant(ConstantWithError(0.0, 1e-15))
     assert graph.mul(exact, x) == exact
     assert graph.op[graph.mul(rounded, x)] is Op.MUL and graph.op[graph.add(rounded, x)] is Op.ADD
-    assert graph.op[graph.mul(graph.constant(Known(1.0, 1e-15)), x)] is Op.MUL
-    assert graph.constant(Known(0.0)) == exact != rounded
+    assert graph.op[graph.mul(graph.constant(ConstantWithError(1.0, 1e-15)), x)] is Op.MUL
+    assert graph.constant(ConstantWithError(0.0)) == exact != rounded
 
 
 def test_equal_doubles_are_not_equal_numbers() -> None:
     """Two numbers may round to the same double with the same bound; only a number itself takes itself away."""
     graph = Graph()
     q = Node(graph, graph.input(0))
-    x, twin = Known(0.5, 1e-16), Known(0.5, 1e-16)
+    x, twin = ConstantWithError(0.5, 1e-16), ConstantWithError(0.5, 1e-16)
     assert graph.is_constant((q * x - q * x).number, 0.0) and exactly(x - x, 0.0)
     assert not graph.is_constant((q * x - q * twin).number, 0.0)
     assert error_of(x - twin) == 2e-16 and error_of(x + (-twin)) == 2e-16
@@ -99,11 +107,11 @@ def test_equal_doubles_are_not_equal_numbers() -> None:
 @given(finite, finite, errors, errors)
 def test_the_same_computation_is_the_same_number(x, y, e, d) -> None:
     """In whatever order, and with whatever signs, it is written."""
-    a, b = Known(x, e), Known(y, d)
+    a, b = ConstantWithError(x, e), ConstantWithError(y, d)
     for one, other in ((a + b, b + a), (a - b, -(b - a)), (a * b, b * a), (-a * b, -(b * a)), (-a - b, -(a + b))):
         assert exactly(one - other, 0.0) and (float(one), error_of(one)) == (float(other), error_of(other))
     if e and x:  # what is exact is told apart by its value alone
-        assert not exactly((a + b) - (Known(x, e) + b), 0.0)
+        assert not exactly((a + b) - (ConstantWithError(x, e) + b), 0.0)
     assert exactly(1.0 * a - a, 0.0) and exactly(a * -1 + a, 0.0) and exactly(a + 0 - a, 0.0)
 
 
@@ -111,10 +119,10 @@ def test_the_sine_of_a_rounded_number_is_rounded() -> None:
     graph = Graph()
     for op, function in ((Op.SIN, math.sin), (Op.COS, math.cos)):
         for error in (0.0, 1e-9):
-            x = Known(0.9, error)
+            x = ConstantWithError(0.9, error)
             value = graph.value[graph.function(op, graph.constant(x))]
             assert value == function(0.9) and error + UNIT_ROUNDOFF / 2 <= error_of(value) <= error + 1e-15
-    assert graph.is_constant(graph.function(Op.COS, graph.constant(Known(0.0))), 1.0)
+    assert graph.is_constant(graph.function(Op.COS, graph.constant(ConstantWithError(0.0))), 1.0)
 
 
 # The kernel
@@ -124,9 +132,11 @@ def compiled(robot: Robot, emitter: str | None = None):
     return robot.compile((*FIVE, *BOUNDS), emitter)
 
 
-def check(robot: Robot, family: str, seed: int, emitter: str | None = None, quantities: tuple[str, ...] = FIVE) -> None:
+def check(
+    robot: Robot, sampling: str, seed: int, emitter: str | None = None, quantities: tuple[str, ...] = FIVE
+) -> None:
     """Against 60 digits on the same doubles, component by component."""
-    states = Sampler(robot.model, family, seed, robot.link_names[-1]).draw(0, STATES)
+    states = Sampler(robot.model, sampling, seed, robot.link_names[-1]).draw(0, STATES)
     payload = [rttrr_pin.Wrench(x.f, x.n, robot.link_names[x.link]) for x in states.loads]
     kernel = robot.compile((*quantities, *(name + "_bound" for name in quantities)), emitter)
     result = kernel(states.q, states.v, states.a, payload=payload or None)
@@ -146,9 +156,9 @@ def test_no_true_error_exceeds_its_bound_in_trees(seed: int, base: Any) -> None:
     check(rttrr_pin.load(random_tree(seed, 7), base=base, friction=True), "mixed", seed)
 
 
-@pytest.mark.parametrize("family", ["uniform", "corners", "zeros", "one-joint", "large-velocities"])
-def test_no_true_error_exceeds_its_bound(robot: Robot, family: str) -> None:
-    check(robot, family, 3)
+@pytest.mark.parametrize("sampling", ["uniform", "corners", "zeros", "one-joint", "large-velocities"])
+def test_no_true_error_exceeds_its_bound(robot: Robot, sampling: str) -> None:
+    check(robot, sampling, 3)
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -167,7 +177,7 @@ def check_file(urdf: str, quantities: tuple[str, ...] = FIVE, count: int = 40) -
     robot = rttrr_pin.load(urdf)
     states = Sampler(robot.model, "mixed", 2).draw(0, count)
     result = robot.compile((*quantities, *(name + "_bound" for name in quantities)))(states.q, states.v, states.a)
-    truth = certify(robot.model, states.q, states.v, states.a, (), "read")
+    truth = enclose(robot.model, states.q, states.v, states.a, (), "read")
     for name in quantities:
         enclosure = getattr(truth, name)
         off = np.maximum(np.maximum(enclosure.lower - result[name], result[name] - enclosure.upper), 0.0)
@@ -212,7 +222,7 @@ def test_a_follower_that_stands_still(offset: str) -> None:
     robot = rttrr_pin.load(urdf)
     states = Sampler(robot.model).draw(0, 20)
     values, bounds_ = bounded_dynamics(robot.model, states.q, states.v, states.a)
-    truth = certify(robot.model, states.q, states.v, states.a, (), "read")
+    truth = enclose(robot.model, states.q, states.v, states.a, (), "read")
     assert ((truth.n.lower - bounds_.n <= values.n) & (values.n <= truth.n.upper + bounds_.n)).all()
 
 
@@ -221,8 +231,8 @@ def test_what_lies_on_an_axis_is_moved_with_errors_as_without() -> None:
     tip = '<joint name="f" type="fixed"><parent link="a"/><child link="b"/><origin xyz="0 0 0.5"/></joint>'
     urdf = arm("0 0 1", inertial("0 0 1", 0.1, 1), f'{tip}<link name="b">{inertial("0 0 0", 0.2, 1)}</link>')
     model = rttrr_pin.load(urdf).model
-    plain, known = (lump(model, bodies(model, arithmetic))[1] for arithmetic in (TRACING, KNOWING))
-    for one, other in zip(plain, known, strict=True):
+    plain, constants = (regroup(model, bodies(model, arithmetic))[1] for arithmetic in (TRACING, TRACING_WITH_ERRORS))
+    for one, other in zip(plain, constants, strict=True):
         assert one.M == other.M == 0.0 and not any(one.r_C) and not any(other.r_C)
         for x, y in zip(one.I.rows, other.I.rows, strict=True):
             assert [*x] == [*y]
@@ -296,10 +306,10 @@ def test_the_operations_of_the_values_are_those_of_the_plain_kernel(robot: Robot
 def test_collecting_keeps_errors() -> None:
     """Sums collected by coefficients whose values are equal and whose errors differ."""
     model = rttrr_pin.load(random_chain(2, ("revolute", "continuous"))).model
-    for arithmetic in (TRACING, KNOWING):
-        program = collect(trace(model, ("tau", "N"), lumped=False, arithmetic=arithmetic))
+    for arithmetic in (TRACING, TRACING_WITH_ERRORS):
+        program = collect(trace(model, ("tau", "N"), regrouped=False, arithmetic=arithmetic))
         errors_kept = [error_of(x) for x in program.graph.value.values()]
-        assert bool(max(errors_kept)) == (arithmetic is KNOWING)
+        assert bool(max(errors_kept)) == (arithmetic is TRACING_WITH_ERRORS)
 
 
 def test_a_bound_alone_can_be_asked_for(rttrr: Robot) -> None:

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rttrr_pin import Drive, Robot, Wrench
+from rttrr_pin import JointEffects, Robot, Wrench
 from rttrr_pin.compile import cache
 from rttrr_pin.compile.emit.llvm import LlvmEmitter
 from rttrr_pin.compile.kernel import fingerprint
@@ -377,11 +377,11 @@ def rich() -> Model:
     R = np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]])
     axis = np.array([0.6, 0.0, 0.8])
     links = tuple(Link(f"link_{i}", 1.0 + i, rng.uniform(-1, 1, 3), tensor + i * np.eye(3)) for i in range(3))
-    drive = Drive(0.1, 0.2, 0.3)
+    effects = JointEffects(0.1, 0.2, 0.3)
     joints = (
-        Joint("a", JointType.REVOLUTE, -1, R, rng.uniform(-1, 1, 3), axis, drive=drive),
-        Joint("b", JointType.PRISMATIC, 0, R, rng.uniform(-1, 1, 3), axis, drive=drive),
-        Joint("c", JointType.REVOLUTE, 1, R, rng.uniform(-1, 1, 3), axis, mimic=Mimic(0, 0.5, 0.25), drive=drive),
+        Joint("a", JointType.REVOLUTE, -1, R, rng.uniform(-1, 1, 3), axis, effects=effects),
+        Joint("b", JointType.PRISMATIC, 0, R, rng.uniform(-1, 1, 3), axis, effects=effects),
+        Joint("c", JointType.REVOLUTE, 1, R, rng.uniform(-1, 1, 3), axis, mimic=Mimic(0, 0.5, 0.25), effects=effects),
     )
     return Model("rich", Link("base"), links, joints)
 
@@ -413,9 +413,9 @@ def neighbours(model: Model) -> Iterator[Model]:
             tensor[a, b] = tensor[b, a] = np.nextafter(tensor[a, b], np.inf)
             links.append(replace(link, inertia=tensor))
         joints = list(nudged_fields(joint, ("R", "p", "axis")))
-        names = [field.name for field in fields(Drive)]
-        joints += [replace(joint, drive=drive) for drive in nudged_fields(joint.drive, (), names)]
-        joints += [replace(joint, drive=Drive(0.3, 0.1, 0.2))]
+        names = [field.name for field in fields(JointEffects)]
+        joints += [replace(joint, effects=effects) for effects in nudged_fields(joint.effects, (), names)]
+        joints += [replace(joint, effects=JointEffects(0.3, 0.1, 0.2))]
         if joint.mimic is not None:
             joints += [replace(joint, mimic=x) for x in nudged_fields(joint.mimic, (), ("multiplier", "offset"))]
             joints += [replace(joint, mimic=replace(joint.mimic, joint=1)), replace(joint, mimic=None)]
@@ -428,7 +428,7 @@ def neighbours(model: Model) -> Iterator[Model]:
     yield replace(model, links=model.links[:2], joints=model.joints[:2])
     yield replace(model, links=model.links[::-1])
     yield model.with_floating_base()
-    yield model.without_drives()
+    yield model.without_joint_effects()
 
 
 def test_every_number_of_a_robot_is_in_its_fingerprint() -> None:

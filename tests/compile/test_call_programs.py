@@ -13,15 +13,15 @@ import pytest
 import rttrr_pin
 from rttrr_pin import LinkWrenches, Robot, Wrench
 from rttrr_pin.compile import Kernel, build, cache
-from rttrr_pin.compile.call_program import Schedule
+from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.emit import EMITTERS, emitter, llvm
 from rttrr_pin.compile.expression import Graph, Node
-from rttrr_pin.compile.outlining import Recorder
+from rttrr_pin.compile.outlining import Outliner
 from rttrr_pin.compile.program import Field, Program
 from rttrr_pin.compile.quantities import QUANTITIES
 from rttrr_pin.compile.register_allocation import arranged
 from rttrr_pin.compile.trace import trace
-from rttrr_pin.core.joint import Drive
+from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.errors import InputError, NumberError
 from rttrr_pin.validation import Sampler
 from rttrr_pin.validation.states import States
@@ -76,7 +76,7 @@ def assert_equal(ours: dict[str, np.ndarray], theirs: LinkWrenches) -> None:
 def test_trees_of_all_joints_followers_drives_and_payloads(seed: int, base: str, by: str) -> None:
     robot = rttrr_pin.load(random_tree(seed, 12), base=base, friction=True)  # type: ignore[arg-type]
     names = [joint.name for joint in robot.model.joints if joint.nv]
-    robot = robot.with_drives({names[0]: Drive(armature=0.7), names[-1]: Drive(0.2, 0.3, 0.4)})
+    robot = robot.with_joint_effects({names[0]: JointEffects(armature=0.7), names[-1]: JointEffects(0.2, 0.3, 0.4)})
     s = states(robot, seed)
     for wrenches in (None, payload(robot)):
         ours = forced(robot, FIVE, by)(s.q, s.v, s.a, payload=wrenches)
@@ -103,7 +103,7 @@ def test_any_robot_of_the_shared_fixture(robot: Robot) -> None:
 
 def test_a_long_chain_takes_calls_by_itself() -> None:
     robot = chain(250)
-    assert isinstance(build.build(robot.model, ["tau"]), Schedule)
+    assert isinstance(build.build(robot.model, ["tau"]), CallProgram)
     s = states(robot, 0, 20)
     tau = robot.compile("tau")(s.q, s.v, s.a)
     for ours, reference in zip(tau, robot.inverse_dynamics(s.q, s.v, s.a).tau, strict=True):
@@ -114,7 +114,7 @@ def test_the_threshold_counts_operations() -> None:
     model = chain(12).model
     count = trace(model, ["tau"]).operations.total
     assert isinstance(build.build(model, ["tau"], straight_line=count), Program)
-    assert isinstance(build.build(model, ["tau"], straight_line=count - 1), Schedule)
+    assert isinstance(build.build(model, ["tau"], straight_line=count - 1), CallProgram)
 
 
 def test_a_robot_far_beyond_the_threshold_is_not_traced_to_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -155,22 +155,22 @@ def test_emitters_that_know_no_calls_get_straight_lines(rttrr: Robot, monkeypatc
 
 def test_code_does_not_grow_with_the_robot() -> None:
     """The table does, by as much for each joint."""
-    schedules = [build.schedule(chain(joints).model, ["tau"]) for joints in (100, 200, 400)]
-    counts = [instructions(schedule) for schedule in schedules]
+    schedules = [build.call_program(chain(joints).model, ["tau"]) for joints in (100, 200, 400)]
+    counts = [instructions(call_program) for call_program in schedules]
     assert counts[0] == counts[1] == counts[2] > 500
-    assert len({len(schedule.steps) for schedule in schedules}) == 1
-    calls = [len(schedule.calls) for schedule in schedules]
+    assert len({len(call_program.steps) for call_program in schedules}) == 1
+    calls = [len(call_program.calls) for call_program in schedules]
     assert calls[2] - calls[1] == 2 * (calls[1] - calls[0])
 
 
-def instructions(schedule: Schedule) -> int:
-    text = str(llvm.emitter().assembly(schedule))
+def instructions(call_program: CallProgram) -> int:
+    text = str(llvm.emitter().assembly(call_program))
     return sum(len(body.splitlines()) for body in re.findall(r"^define .*?^}", text, re.MULTILINE | re.DOTALL))
 
 
 def test_columns_are_used_again() -> None:
     """What lies between inputs and outputs: R, f and n of each link, and little else."""
-    small, large = (build.schedule(chain(joints).model, ["tau"]) for joints in (100, 200))
+    small, large = (build.call_program(chain(joints).model, ["tau"]) for joints in (100, 200))
     assert (large.between - small.between) / 100 <= 9 + 3 + 3
 
 
@@ -180,7 +180,7 @@ def test_the_same_bits_in_any_block_layout_or_thread(size: int, monkeypatch: pyt
     s = states(robot, 0, 9000)
     kernel = forced(robot, FIVE)
     batch = kernel(s.q, s.v, s.a)
-    monkeypatch.setattr(llvm, "SECOND_LEVEL", 8 * size * build.schedule(robot.model, FIVE).columns)
+    monkeypatch.setattr(llvm, "SECOND_LEVEL", 8 * size * build.call_program(robot.model, FIVE).columns)
     monkeypatch.setenv(cache.VARIABLE, "")
     blocked = forced(robot, FIVE)(s.q, s.v, s.a, threads=2)
     columns = kernel(*(np.asfortranarray(x) for x in (s.q, s.v, s.a)))
@@ -222,18 +222,18 @@ def test_every_number_that_is_not_finite_is_named(text: str, base: str, by: str)
 
 def test_an_input_that_only_results_without_use_depend_on_is_unread() -> None:
     """A step has all results that some call needs; another call may not need them all."""
-    recorder = Recorder(Graph())
-    a, b, c, d = (Node(recorder.graph, recorder.graph.input(place)) for place in range(4))
+    outliner = Outliner(Graph())
+    a, b, c, d = (Node(outliner.graph, outliner.graph.input(place)) for place in range(4))
 
     def step(x: Node, y: Node) -> tuple[Node, Node]:
         return x + x, y * y
 
-    (first, second), (third, _) = recorder.call(step, a, b), recorder.call(step, c, d)
+    (first, second), (third, _) = outliner.call(step, a, b), outliner.call(step, c, d)
     fields = (Field("x", (4,)),), (Field("y", (3,)),)
-    schedule = arranged(recorder, [x.number for x in (first, second, third)], *fields)
-    assert len(schedule.calls) == 2
-    assert schedule.unread == (3,)
-    assert schedule.evaluate([np.array(x) for x in (1.0, 2.0, 3.0, 4.0)]) == [2.0, 4.0, 6.0]
+    call_program = arranged(outliner, [x.number for x in (first, second, third)], *fields)
+    assert len(call_program.calls) == 2
+    assert call_program.unread == (3,)
+    assert call_program.evaluate([np.array(x) for x in (1.0, 2.0, 3.0, 4.0)]) == [2.0, 4.0, 6.0]
 
 
 def test_what_comes_from_disk_is_the_same(rttrr: Robot, monkeypatch: pytest.MonkeyPatch) -> None:

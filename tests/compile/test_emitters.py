@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import rttrr_pin
-from rttrr_pin import Drive, Robot, Wrench
+from rttrr_pin import JointEffects, Robot, Wrench
 from rttrr_pin.compile.cache import VARIABLE
 from rttrr_pin.compile.emit import EMITTERS, c, emitter, numba
 from rttrr_pin.compile.expression import Graph, Op
@@ -50,8 +50,8 @@ def name(request: pytest.FixtureRequest) -> str:
 @pytest.fixture(scope="module")
 def tree() -> Robot:
     robot = rttrr_pin.load(TREE)
-    return robot.with_drives(
-        {joint: Drive(0.1 * k, 0.2 * k, 0.3 * k) for k, joint in enumerate(robot.joint_names, start=1)}
+    return robot.with_joint_effects(
+        {joint: JointEffects(0.1 * k, 0.2 * k, 0.3 * k) for k, joint in enumerate(robot.joint_names, start=1)}
     )
 
 
@@ -397,7 +397,7 @@ def test_without_a_c_compiler_the_source_is_there_all_the_same(
 ) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
     monkeypatch.delenv("CC", raising=False)
-    robot = rttrr.with_drives({})
+    robot = rttrr.with_joint_effects({})
     assert "#include <math.h>" in robot.compile(emitter="c").source()
     with pytest.raises(InputError, match="install gcc, or take another emitter"):
         robot.compile(emitter="c")(*states(robot, 1))
@@ -406,7 +406,7 @@ def test_without_a_c_compiler_the_source_is_there_all_the_same(
 def test_a_c_compiler_that_fails_is_named(rttrr: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("CC", "cc -no-such-option")
     with pytest.raises(InputError, match=r"cc -no-such-option .* failed: .*set CC to another"):
-        rttrr.with_drives({}).compile(emitter="c")(*states(rttrr, 1))
+        rttrr.with_joint_effects({}).compile(emitter="c")(*states(rttrr, 1))
 
 
 @pytest.mark.parametrize("name", ["c", "numba"])

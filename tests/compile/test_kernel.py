@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.project.test_robot import BAD, JOINTS, PAYLOADS, ZERO, some
 
 import rttrr_pin
-from project.test_robot import BAD, JOINTS, PAYLOADS, ZERO, some
-from rttrr_pin import Drive, Robot, RttrrError, Wrench
+from rttrr_pin import JointEffects, Robot, RttrrError, Wrench
 from rttrr_pin.compile import QUANTITIES, Kernel
 from rttrr_pin.errors import InputError, NumberError, ShapeError, UnknownNameError
 from rttrr_pin.validation import Sampler
@@ -91,7 +91,7 @@ def test_many_trees_by_the_emitter_that_compiles_nothing(seed: int) -> None:
 
 
 def test_drives_enter_tau_and_not_the_bearings(rttrr: Robot) -> None:
-    robot = rttrr.with_drives({"joint_2": Drive(3.0, 2.0, 5.0), "joint_5": Drive(armature=0.1)})
+    robot = rttrr.with_joint_effects({"joint_2": JointEffects(3.0, 2.0, 5.0), "joint_5": JointEffects(armature=0.1)})
     agree(robot, RECURSION)
 
 
@@ -586,7 +586,7 @@ def test_a_masked_array_is_refused(kernel: Kernel) -> None:
 @pytest.fixture(scope="module")
 def rough(rttrr: Robot) -> Robot:
     """Coulomb friction alone: the sign of a rate is all of it that enters some outputs."""
-    return rttrr.with_drives({name: Drive(friction=1.0 + i) for i, name in enumerate(JOINTS)})
+    return rttrr.with_joint_effects({name: JointEffects(friction=1.0 + i) for i, name in enumerate(JOINTS)})
 
 
 NOT_FINITE = (np.nan, np.inf, -np.inf)
@@ -614,7 +614,7 @@ def test_what_is_not_finite_is_found_in_every_input(rough: Robot, name: str, val
 
 @pytest.mark.parametrize("value", NOT_FINITE)
 def test_the_rate_of_a_sliding_joint_with_friction_alone(value: float, emitter: str) -> None:
-    robot = rttrr_pin.load(EXAMPLES["one-joint"]).with_drives({"joint_1": Drive(friction=2.0)})
+    robot = rttrr_pin.load(EXAMPLES["one-joint"]).with_joint_effects({"joint_1": JointEffects(friction=2.0)})
     with pytest.raises(NumberError, match=f"joint 'joint_1', is {value}"):
         robot.compile("tau", emitter)(np.zeros((3, 1)), np.array([[0.0], [0.0], [value]]), np.zeros((3, 1)))
 

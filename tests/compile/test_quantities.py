@@ -10,7 +10,7 @@ import pinocchio as pin
 import pytest
 
 import rttrr_pin
-from rttrr_pin import Drive, Robot, Wrench
+from rttrr_pin import JointEffects, Robot, Wrench
 from rttrr_pin.compile import QUANTITIES
 from rttrr_pin.core.joint import JointType
 from rttrr_pin.errors import InputError
@@ -221,7 +221,9 @@ def driven() -> Robot:
     """A chain whose first joint follows its last, with drives: one that Pinocchio has no words for."""
     text = random_chain(7, ("revolute", "prismatic", "revolute"))
     text = text.replace("</joint>", '<mimic joint="joint_3" multiplier="-1.5" offset="0.3"/></joint>', 1)
-    return rttrr_pin.load(text).with_drives({"joint_3": Drive(0.7, 0.2, 0.5), "joint_1": Drive(0.3, 0.1)})
+    return rttrr_pin.load(text).with_joint_effects(
+        {"joint_3": JointEffects(0.7, 0.2, 0.5), "joint_1": JointEffects(0.3, 0.1)}
+    )
 
 
 @pytest.fixture(scope="module")
@@ -244,7 +246,7 @@ def test_followers_and_drives_enter_as_in_the_recursion(driven: Robot, of_driven
 
 def test_damping_has_a_derivative_and_friction_has_none(driven: Robot, of_driven: Any) -> None:
     drawn, ours = of_driven
-    bare = Robot(driven.model.without_drives()).compile(DERIVATIVES)(drawn.q, drawn.v, drawn.a)
+    bare = Robot(driven.model.without_joint_effects()).compile(DERIVATIVES)(drawn.q, drawn.v, drawn.a)
     own = np.diag([0.0, 0.2 + 1.5**2 * 0.1])
     assert norm_error(ours["dtau_dv"], bare["dtau_dv"] + own) <= ROUNDING
     assert norm_error(ours["dtau_dq"], bare["dtau_dq"]) <= ROUNDING

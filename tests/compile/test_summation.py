@@ -17,10 +17,10 @@ from rttrr_pin.compile.emit import emitter
 from rttrr_pin.compile.expression import Graph, Op
 from rttrr_pin.compile.program import NUMERIC, Array, Field, Program
 from rttrr_pin.compile.simplify import simplify
-from rttrr_pin.compile.summation import in_chains
+from rttrr_pin.compile.summation import order_sums
 from rttrr_pin.compile.trace import trace
 from rttrr_pin.core.wrench import LINK_QUANTITIES
-from rttrr_pin.exact import certify
+from rttrr_pin.exact import enclose
 from rttrr_pin.exact.enclosures import Enclosure
 from rttrr_pin.validation import Sampler
 from support.serial_chains import EXAMPLES
@@ -56,7 +56,7 @@ def program_of(steps: Sequence[tuple[Op, int, int]], results: int = 3) -> Progra
 def test_the_values_are_the_same(fused: bool, steps: list[tuple[Op, int, int]], x: tuple[Fraction, ...]) -> None:
     """Exactly, where nothing is rounded."""
     program = program_of(steps)
-    assert exactly(in_chains(program, fused), x) == exactly(program, x)
+    assert exactly(order_sums(program, fused), x) == exactly(program, x)
 
 
 def exactly(program: Program, x: Sequence[Fraction]) -> list[Fraction]:
@@ -105,7 +105,7 @@ def test_small_terms_come_first() -> None:
     x, y, z = (graph.input(k) for k in range(3))
     total = graph.sub(graph.mul(graph.constant(1000.0), x), graph.mul(graph.constant(10.0), y))
     total = graph.add(graph.add(total, z), graph.constant(1.0))
-    made = in_chains(Program(graph, (Field("x", (3,)),), (Field("s", (1,)),), (total,)), fused=True)
+    made = order_sums(Program(graph, (Field("x", (3,)),), (Field("s", (1,)),), (total,)), fused=True)
     ops = [made.graph.op[x] for x in made.order if made.graph.op[x] not in (Op.CONSTANT, Op.INPUT)]
     assert ops == [Op.ADD, Op.FNMA, Op.FMA]  # z + 1, then - 10 y, then 1000 x
     assert made.evaluate([2.0, 3.0, 4.0]) == [2000.0 - 30.0 + 4.0 + 1.0]
@@ -119,7 +119,7 @@ def test_signs_find_their_operation(sign: float, other: float) -> None:
     x, y, z = (graph.input(k) for k in range(3))
     product = graph.mul(graph.constant(sign), graph.mul(x, y))
     total = graph.add(product, graph.mul(graph.constant(other), z))
-    made = in_chains(Program(graph, (Field("x", (3,)),), (Field("s", (1,)),), (total,)), fused=True)
+    made = order_sums(Program(graph, (Field("x", (3,)),), (Field("s", (1,)),), (total,)), fused=True)
     assert made.evaluate([2.0, 3.0, 5.0]) == [sign * 6.0 + other * 5.0]
     ops = [made.graph.op[x] for x in made.order if made.graph.op[x] is not Op.INPUT]
     both = {(1.0, 1.0): Op.FMA, (1.0, -1.0): Op.FMS, (-1.0, 1.0): Op.FNMA, (-1.0, -1.0): Op.FMA}
@@ -130,7 +130,7 @@ def test_a_sum_that_is_needed_elsewhere_stays_a_term() -> None:
     graph = Graph()
     x, y, z = (graph.input(k) for k in range(3))
     part = graph.add(x, y)
-    made = in_chains(Program(graph, (), (), (graph.add(part, z), part)), fused=True)
+    made = order_sums(Program(graph, (), (), (graph.add(part, z), part)), fused=True)
     assert sum(op is Op.ADD for op in made.graph.op) == 2
 
 
@@ -139,7 +139,7 @@ def test_long_sums_need_no_deep_stack() -> None:
     total = graph.input(0)
     for k in range(1, 5000):
         total = graph.add(total, graph.mul(graph.input(k), graph.input(k - 1)))
-    made = in_chains(Program(graph, (Field("x", (5000,)),), (Field("s", (1,)),), (total,)), fused=True)
+    made = order_sums(Program(graph, (Field("x", (5000,)),), (Field("s", (1,)),), (total,)), fused=True)
     assert made.evaluate([1.0] * 5000) == [5000.0]
 
 
@@ -147,9 +147,9 @@ def test_chains_are_nearer_to_the_truth() -> None:
     """What is compiled, than the sums as the recursion writes them, for every quantity of the links."""
     robot = rttrr_pin.load("rttrr")
     states = Sampler(robot.model, "uniform", 4).draw(0, 2000)
-    truth = certify(robot.model, states.q, states.v, states.a, (), "read")
+    truth = enclose(robot.model, states.q, states.v, states.a, (), "read")
     compiled = robot.compile(LINK_QUANTITIES)(states.q, states.v, states.a)
-    plain = simplify(trace(robot.model, LINK_QUANTITIES, lumped=False))
+    plain = simplify(trace(robot.model, LINK_QUANTITIES, regrouped=False))
     columns = iter(plain.evaluate([*states.q.T, *states.v.T, *states.a.T]))
     for name, enclosure in truth.items():
         if name in LINK_QUANTITIES:

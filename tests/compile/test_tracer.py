@@ -16,7 +16,7 @@ import rttrr_pin
 from rttrr_pin import Robot
 from rttrr_pin.compile.expression import Graph, Node, Op
 from rttrr_pin.compile.program import Program
-from rttrr_pin.compile.regrouping import lump
+from rttrr_pin.compile.regrouping import regroup
 from rttrr_pin.compile.trace import trace
 from rttrr_pin.core.dual import Dual, part_of, value_of
 from rttrr_pin.core.dynamics import bodies, dynamics
@@ -204,7 +204,7 @@ def test_functions_of_constants_are_constants() -> None:
 
 def lumped_forces(model: Model, drawn: States) -> np.ndarray:
     """The driving forces, (N, nv), by the readable recursion on links whose inertia was moved."""
-    tree, links = lump(model, bodies(model, FLOAT))
+    tree, links = regroup(model, bodies(model, FLOAT))
     assert [link.type for link in links] == [joint.type for joint in model.joints]
     tau = dynamics(tree, FLOAT, list(drawn.q.T), list(drawn.v.T), list(drawn.a.T), links=links).tau
     return np.array([np.broadcast_to(x, len(drawn.q)) for x in tau]).reshape(model.nv, len(drawn.q)).T
@@ -223,7 +223,7 @@ def test_lumping_leaves_the_driving_forces(seed: int, base: Any) -> None:
 def test_lumping_adds_no_operation(seed: int) -> None:
     model = rttrr_pin.load(random_tree(seed, 1 + seed % 12), friction=True).model
     for outputs in (["tau"], ["mass_matrix"], ["tau", "gravity_torque"]):
-        with_, without = (trace(model, outputs, lumped=choice).operations for choice in (True, False))
+        with_, without = (trace(model, outputs, regrouped=choice).operations for choice in (True, False))
         assert with_.total <= without.total
         assert with_.multiplications <= without.multiplications
         assert with_.sincos <= without.sincos
@@ -248,8 +248,8 @@ def test_lumping_where_joints_stand_on_massless_links(seed: int) -> None:
 @pytest.mark.parametrize("seed", range(3))
 def test_lumping_twice_is_lumping_once(seed: int) -> None:
     model = rttrr_pin.load(random_tree(seed, 8)).model
-    once = lump(model, bodies(model, FLOAT))
-    (_, before), (_, after) = once, lump(*once)
+    once = regroup(model, bodies(model, FLOAT))
+    (_, before), (_, after) = once, regroup(*once)
     assert numbers(after) <= numbers(before) < numbers(bodies(model, FLOAT))
 
 

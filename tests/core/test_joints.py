@@ -9,7 +9,7 @@ import pinocchio as pin
 import pytest
 
 import rttrr_pin
-from rttrr_pin import Drive, Robot, RttrrError
+from rttrr_pin import JointEffects, Robot, RttrrError
 from rttrr_pin.errors import InputError, NumberError, ShapeError, UnknownNameError, UrdfError
 from rttrr_pin.implementations import make_oracle
 from rttrr_pin.validation import Sampler, validate
@@ -34,7 +34,7 @@ def test_each_joint_type_alone_and_below_itself(kind: str) -> None:
     for joints in (1, 3):
         robot = rttrr_pin.load(random_tree(joints, joints, (kind,), mimics=False))
         assert {joint.type for joint in robot.model.joints} == {kind}
-        assert validate(robot, 40, family="mixed").agrees
+        assert validate(robot, 40, sampling="mixed").agrees
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -179,8 +179,8 @@ def test_base_is_fixed_or_floating() -> None:
 
 
 def test_drives_add_to_tau_and_not_to_the_bearings(rttrr: Robot) -> None:
-    drives = {"joint_2": Drive(armature=3.0, damping=2.0, friction=5.0), "joint_5": Drive(armature=0.1)}
-    robot = rttrr.with_drives(drives)
+    effects = {"joint_2": JointEffects(armature=3.0, damping=2.0, friction=5.0), "joint_5": JointEffects(armature=0.1)}
+    robot = rttrr.with_joint_effects(effects)
     drawn = Sampler(rttrr.model).draw(0, 30)
     drawn.v[0] = 0.0
     with_, without = (x.inverse_dynamics(drawn.q, drawn.v, drawn.a) for x in (robot, rttrr))
@@ -207,25 +207,25 @@ def test_friction_of_the_file_is_an_option() -> None:
 
 def test_armature_is_in_pinocchios_torque_and_not_in_its_force(rttrr: Robot) -> None:
     """tau - S^T f = armature * a."""
-    robot = rttrr.with_drives({"joint_1": Drive(armature=0.7)})
+    robot = rttrr.with_joint_effects({"joint_1": JointEffects(armature=0.7)})
     drawn = Sampler(rttrr.model).draw(0, 10)
     theirs = make_oracle("pinocchio", robot.model).evaluate(drawn.q, drawn.v, drawn.a).wrenches
     assert norm_error(theirs.tau[:, 0], theirs.n[:, 0, 2] + 0.7 * drawn.a[:, 0]) <= ROUNDING
 
 
 @pytest.mark.parametrize(
-    ("drives", "error", "message"),
+    ("effects", "error", "message"),
     [
-        ({"joint_9": Drive()}, UnknownNameError, "no moving joint is called 'joint_9'"),
-        ({"tool_joint": Drive()}, UnknownNameError, "tool_joint"),
-        ({"joint_1": Drive(armature=-1.0)}, NumberError, "armature of joint 'joint_1' is -1.0"),
-        ({"joint_1": Drive(friction=np.nan)}, NumberError, "friction of joint 'joint_1' is nan"),
+        ({"joint_9": JointEffects()}, UnknownNameError, "no moving joint is called 'joint_9'"),
+        ({"tool_joint": JointEffects()}, UnknownNameError, "tool_joint"),
+        ({"joint_1": JointEffects(armature=-1.0)}, NumberError, "armature of joint 'joint_1' is -1.0"),
+        ({"joint_1": JointEffects(friction=np.nan)}, NumberError, "friction of joint 'joint_1' is nan"),
     ],
     ids=str,
 )
-def test_bad_drives(rttrr: Robot, drives: dict[str, Drive], error: type[RttrrError], message: str) -> None:
+def test_bad_drives(rttrr: Robot, effects: dict[str, JointEffects], error: type[RttrrError], message: str) -> None:
     with pytest.raises(error, match=message):
-        rttrr.with_drives(drives)
+        rttrr.with_joint_effects(effects)
 
 
 def test_planar_joints_lie_in_the_plane_of_z() -> None:

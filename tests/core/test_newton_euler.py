@@ -15,7 +15,7 @@ from rttrr_pin.core.payload import Load
 from rttrr_pin.core.scalars import FLOAT, Arithmetic
 from rttrr_pin.implementations import make_oracle
 from rttrr_pin.validation import EPS as PACKAGE_EPS
-from rttrr_pin.validation import FAMILIES, Sampler, validate
+from rttrr_pin.validation import SAMPLINGS, Sampler, validate
 from support.serial_chains import RANDOM_TYPES, random_chain
 from support.tolerances import EPS, MODEL, ROUNDING, norm_error
 
@@ -37,9 +37,9 @@ def states(robot: Robot, seed: int, count: int = 50) -> tuple[np.ndarray, np.nda
 
 
 @pytest.mark.parametrize("seed", SEEDS)
-@pytest.mark.parametrize("family", FAMILIES)
-def test_agrees_with_pinocchio_on_every_family_of_states(robot: Robot, family: str, seed: int) -> None:
-    assert validate(robot, 64, seed, family).agrees
+@pytest.mark.parametrize("sampling", SAMPLINGS)
+def test_agrees_with_pinocchio_on_every_family_of_states(robot: Robot, sampling: str, seed: int) -> None:
+    assert validate(robot, 64, seed, sampling).agrees
 
 
 @pytest.mark.parametrize("seed", SEEDS)

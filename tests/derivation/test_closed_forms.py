@@ -13,7 +13,8 @@ from rttrr_pin.derivation.derivation import ClosedForms, closed_forms
 from rttrr_pin.derivation.latex import latex_number, latex_power, latex_product, latex_sum
 from rttrr_pin.derivation.ring import Ring
 from rttrr_pin.derivation.symbols import ACCELERATION, FORCE, LENGTH, MOMENT, Dimension, Role, Symbol, renamed
-from rttrr_pin.exact.intervals import BALL, ball, precision
+from rttrr_pin.exact.intervals import INTERVAL, precision
+from rttrr_pin.exact.intervals import interval as ball
 from support.tolerances import ROUNDING
 from support.trees import random_tree
 
@@ -154,6 +155,6 @@ def test_balls_enclose_and_keep_the_precision_as_it_was() -> None:
         assert ctx.prec == 300
         third = ball(Fraction(1, 3))
         assert (third * 3).contains(1) and not (third * 3 - 1 + ball(2.0**-200)).contains(0)
-        sine, cosine = BALL.sincos(ball(0.5))
+        sine, cosine = INTERVAL.sincos(ball(0.5))
         assert (sine * sine + cosine * cosine).contains(1)
     assert ctx.prec == before

@@ -17,7 +17,7 @@ import pinocchio as pin
 import pytest
 
 import rttrr_pin
-from rttrr_pin import Drive, Robot, Wrench
+from rttrr_pin import JointEffects, Robot, Wrench
 from rttrr_pin import derivation as symbolic
 from rttrr_pin.cli import main
 from rttrr_pin.compile.emit.c import compiler
@@ -115,7 +115,7 @@ def pinocchios(name: str) -> dict[str, np.ndarray]:
     load = Load(len(model.links) - 1, payload[:, :3], payload[:, 3:])
     wrenches = make_oracle("pinocchio", model).evaluate(at.q, at.v, at.a, [load]).wrenches
     found = {key: getattr(wrenches, key) for key in ("tau", *OF_LINKS)}
-    still = Robot(model.without_drives())
+    still = Robot(model.without_joint_effects())
     found["M"], found["g"] = robot(name).mass_matrix(at.q), still.gravity_torque(at.q)
     found["Cv"] = still.nonlinear_effects(at.q, at.v) - found["g"]
     if all(joint.mimic is None for joint in model.joints):
@@ -320,8 +320,8 @@ def test_blocks_of_markdown_are_short_enough_to_render() -> None:
 
 def test_the_equation_of_motion_is_the_sum_of_its_parts() -> None:
     """Exactly, as polynomials, friction and armature included."""
-    drives = {joint: Drive(0.25, 0.5, 2.0) for joint in robot("rttrr").joint_names}
-    model = robot("rttrr").with_drives(drives).model
+    effects = {joint: JointEffects(0.25, 0.5, 2.0) for joint in robot("rttrr").joint_names}
+    model = robot("rttrr").with_joint_effects(effects).model
     closed = closed_forms(symbolic.SymbolicRobot(model, symbolic.default_letters(model, 5), 5))
     ring, parts = closed.robot.ring, model_terms(closed)
     for i, tau in enumerate(closed.tau):
@@ -392,8 +392,8 @@ def test_every_term_has_the_dimension_of_its_quantity(case: tuple[str, str, str]
 def test_friction_of_a_joint_that_follows_another(form: str) -> None:
     """Its sign is that of the other's rate, turned where the multiplier is negative."""
     model = branched()
-    drives = [Drive(0.0 if joint.mimic else 0.1, 0.2, 0.3) for joint in model.joints]
-    joints = tuple(replace(joint, drive=drive) for joint, drive in zip(model.joints, drives, strict=True))
+    effects = [JointEffects(0.0 if joint.mimic else 0.1, 0.2, 0.3) for joint in model.joints]
+    joints = tuple(replace(joint, drive=drive) for joint, drive in zip(model.joints, effects, strict=True))
     rubbing = Robot(replace(model, joints=joints))
     module: dict[str, Any] = {}
     exec(WRITERS["python"](symbolic.derive(rubbing, ["tau", "M"], form)), module)

@@ -13,9 +13,9 @@ import pytest
 from flint import arb
 from hypothesis import given
 from hypothesis import strategies as st
+from tests.exact.test_rounding import exact_dynamics, mp_rotation
 
 import rttrr_pin
-from exact.test_rounding import exact_dynamics, mp_rotation
 from rttrr_pin import Robot, Wrench
 from rttrr_pin.core.dynamics import evaluate
 from rttrr_pin.core.model import Link, Model
@@ -23,10 +23,10 @@ from rttrr_pin.core.payload import Load
 from rttrr_pin.core.scalars import Arithmetic
 from rttrr_pin.core.wrench import LINK_QUANTITIES
 from rttrr_pin.errors import InputError, NumberError, ShapeError
-from rttrr_pin.exact import Certificate, bounded_dynamics, certify
-from rttrr_pin.exact.enclosures import PRECISIONS, STRAIGHT_FROM, enclose
-from rttrr_pin.exact.intervals import ball, precision
-from rttrr_pin.exact.parameters import written
+from rttrr_pin.exact import Enclosures, bounded_dynamics, enclose
+from rttrr_pin.exact.enclosures import PRECISIONS, STRAIGHT_FROM, enclosing_doubles
+from rttrr_pin.exact.intervals import interval, precision
+from rttrr_pin.exact.parameters import exact_parameters
 from rttrr_pin.validation import Sampler
 from rttrr_pin.validation.states import States
 from support.serial_chains import EXAMPLES, random_chain
@@ -37,8 +37,8 @@ ROWS = (4, STRAIGHT_FROM)
 """States for which the recursion runs on balls as it stands, and for which its operations are recorded first."""
 
 
-def certified(robot: Robot, states: States, numbers: Any = "doubles") -> Certificate:
-    return certify(robot.model, states.q, states.v, states.a, states.loads, numbers)
+def certified(robot: Robot, states: States, numbers: Any = "doubles") -> Enclosures:
+    return enclose(robot.model, states.q, states.v, states.a, states.loads, numbers)
 
 
 def steps(lower: float, upper: float) -> int:
@@ -49,10 +49,10 @@ def steps(lower: float, upper: float) -> int:
     return count
 
 
-def check_narrow(certificate: Certificate) -> None:
+def check_narrow(enclosures: Enclosures) -> None:
     """One double, neighbours, or next to nothing against the vector or the largest of the quantity."""
-    assert certificate.tight.all()
-    for key, ends in certificate.items():
+    assert enclosures.tight.all()
+    for key, ends in enclosures.items():
         size = np.maximum(abs(ends.lower), abs(ends.upper))
         vector = size if key == "tau" else np.linalg.norm(size, axis=-1, keepdims=True)
         largest = np.maximum(size.max(axis=tuple(range(1, size.ndim)), keepdims=True, initial=0.0), 1.0)
@@ -60,25 +60,25 @@ def check_narrow(certificate: Certificate) -> None:
         assert (near | (ends.upper - ends.lower <= np.maximum(2.0**-80 * vector, 2.0**-200 * largest))).all(), key
 
 
-def check_against_60_digits(robot: Robot, family: str, seed: int, rows: int) -> None:
-    states = Sampler(robot.model, family, seed, robot.link_names[-1]).draw(0, rows)
-    certificate = certified(robot, states)
-    check_narrow(certificate)
+def check_against_60_digits(robot: Robot, sampling: str, seed: int, rows: int) -> None:
+    states = Sampler(robot.model, sampling, seed, robot.link_names[-1]).draw(0, rows)
+    enclosures = certified(robot, states)
+    check_narrow(enclosures)
     with mpmath.workdps(60):
         for k in range(min(rows, 6)):
             one = slice(k, k + 1)
             loads = [load.block(one) for load in states.loads]
             exact = exact_dynamics(robot.model, states.q[one], states.v[one], states.a[one], loads)
             for key, truth in exact.items():
-                ends = getattr(certificate, key)
+                ends = getattr(enclosures, key)
                 slack = SIXTY_DIGITS * max((abs(x) for x in truth.flat), default=0)
                 assert (ends.lower[k] - slack <= truth).all() and (truth <= ends.upper[k] + slack).all(), (key, k)
 
 
 @pytest.mark.parametrize("rows", ROWS)
-@pytest.mark.parametrize("family", ["mixed", "large-velocities"])
-def test_enclosures_hold_what_60_digits_yield(robot: Robot, family: str, rows: int) -> None:
-    check_against_60_digits(robot, family, 1, rows)
+@pytest.mark.parametrize("sampling", ["mixed", "large-velocities"])
+def test_enclosures_hold_what_60_digits_yield(robot: Robot, sampling: str, rows: int) -> None:
+    check_against_60_digits(robot, sampling, 1, rows)
 
 
 @pytest.mark.parametrize("rows", ROWS)
@@ -92,8 +92,8 @@ def test_enclosures_hold_what_60_digits_yield_in_trees(seed: int, base: Any, row
 @pytest.mark.parametrize("name", ["rttrr", "any-axes"])
 def test_an_enclosure_is_one_double_or_two_neighbours(name: str) -> None:
     robot = rttrr_pin.load(EXAMPLES.get(name, name))
-    certificate = certified(robot, Sampler(robot.model).draw(0, 40))
-    for _, ends in certificate.items():
+    enclosures = certified(robot, Sampler(robot.model).draw(0, 40))
+    for _, ends in enclosures.items():
         assert (ends.lower <= ends.upper).all()
         assert (np.nextafter(ends.lower, np.inf) >= ends.upper).all()
         assert (ends.lower <= ends.mid).all() and (ends.mid <= ends.upper).all()
@@ -105,7 +105,7 @@ def test_recorded_or_not_the_enclosures_are_the_same(rttrr: Robot) -> None:
     for k in range(STRAIGHT_FROM):
         one = slice(k, k + 1)
         loads = [load.block(one) for load in states.loads]
-        few = certify(rttrr.model, states.q[one], states.v[one], states.a[one], loads)
+        few = enclose(rttrr.model, states.q[one], states.v[one], states.a[one], loads)
         for key, ends in few.items():
             np.testing.assert_array_equal(ends.lower, getattr(many, key).lower[one])
             np.testing.assert_array_equal(ends.upper, getattr(many, key).upper[one])
@@ -139,14 +139,14 @@ def test_rounding_is_outwards_and_least(name: str, rows: int) -> None:
             q[:, column + 3 : column + 7] = (0.0, 0.6, 0.0, 0.8)  # not quite of length 1 in doubles: taken as it is
         column += joint.nq
     v, a = rng.normal(size=(2, rows, robot.model.nv)).round(1)
-    certificate = certify(robot.model, q, v, a)
+    enclosures = enclose(robot.model, q, v, a)
     for k in range(min(rows, 4)):
         result = evaluate(robot.model, RATIONAL, q[k : k + 1], v[k : k + 1], a[k : k + 1])
         exact = {"tau": result.tau} | {
             key: [x for vector in getattr(result, key) for x in vector] for key in LINK_QUANTITIES
         }
         for key, truths in exact.items():
-            ends = getattr(certificate, key)
+            ends = getattr(enclosures, key)
             for low, high, truth in zip(ends.lower[k].flat, ends.upper[k].flat, truths, strict=True):
                 assert Fraction(low) <= truth <= Fraction(high), key
                 assert steps(low, high) <= (2 if Fraction(float(truth)) == truth else 1), key
@@ -162,15 +162,15 @@ def test_a_ball_is_rounded_outwards(value: Fraction, bits: int, width: Fraction)
     if abs(value) + width >= Fraction(1e308):
         return
     with precision(bits):
-        x = ball(value) + arb(0, float(width))
-        low, high = enclose(x)
+        x = interval(value) + arb(0, float(width))
+        low, high = enclosing_doubles(x)
     assert Fraction(low) <= value <= Fraction(high)
     assert x >= low and x <= high  # of all that the ball holds
 
 
 @pytest.mark.parametrize("value", [0.0, 1.0, -1.0, 5e-324, 1.7e308, -2.5])
 def test_a_double_is_its_own_enclosure(value: float) -> None:
-    assert enclose(arb(value)) == (value, value)
+    assert enclosing_doubles(arb(value)) == (value, value)
 
 
 def test_precision_rises_where_terms_cancel() -> None:
@@ -183,8 +183,8 @@ def test_precision_rises_where_terms_cancel() -> None:
     )
     huge = 1e36
     loads = [Wrench((0, 0, huge), link="b"), Wrench((0, 0, -huge), link="b", expressed_in="base")]
-    easy = robot.certify((0.7, 0.7), (0, 0), (0, 0))
-    hard = robot.certify((0.7, 0.7), (0, 0), (0, 0), loads)
+    easy = robot.enclose((0.7, 0.7), (0, 0), (0, 0))
+    hard = robot.enclose((0.7, 0.7), (0, 0), (0, 0), loads)
     assert int(easy.bits) == PRECISIONS[0] < int(hard.bits)
     assert hard.tight
     weight = Fraction(9.81) * 2
@@ -195,18 +195,18 @@ def test_precision_rises_where_terms_cancel() -> None:
 def test_what_is_zero_by_rotations_is_narrow_too() -> None:
     """Some components vanish by sines and cosines of rpy, which balls cannot prove: more bits make them small enough."""
     robot = rttrr_pin.load(random_tree(0, 9), friction=True)
-    certificate = certified(robot, Sampler(robot.model, "mixed", 0).draw(0, 60), "read")
-    check_narrow(certificate)
-    assert PRECISIONS[0] in certificate.bits and certificate.bits.max() > PRECISIONS[0]
+    enclosures = certified(robot, Sampler(robot.model, "mixed", 0).draw(0, 60), "read")
+    check_narrow(enclosures)
+    assert PRECISIONS[0] in enclosures.bits and enclosures.bits.max() > PRECISIONS[0]
 
 
 def test_a_state_of_low_precision_does_not_hold_back_the_others(rttrr: Robot) -> None:
     """In one batch each state has the bits that it needs."""
     wrench = Wrench(np.array([[0.0, 0, 0], [1e60, 0, 0]]), expressed_in="base")
     back = Wrench(np.array([[0.0, 0, 0], [-1e60, 0, 0]]), expressed_in="base")
-    certificate = rttrr.certify(np.ones((2, 5)), np.ones((2, 5)), np.ones((2, 5)), [wrench, back])
-    assert certificate.bits[0] == PRECISIONS[0] < certificate.bits[1]
-    np.testing.assert_array_equal(certificate.tau.lower[0], certificate.tau.lower[1])
+    enclosures = rttrr.enclose(np.ones((2, 5)), np.ones((2, 5)), np.ones((2, 5)), [wrench, back])
+    assert enclosures.bits[0] == PRECISIONS[0] < enclosures.bits[1]
+    np.testing.assert_array_equal(enclosures.tau.lower[0], enclosures.tau.lower[1])
 
 
 # The numbers
@@ -230,8 +230,8 @@ def test_a_pendulum_by_hand(numbers: Any, rows: int) -> None:
         moment, weight = I + m * r * r, m * r * Fraction(9.81)
         acceleration = acceleration or float(weight / moment)
         truths[kind] = moment * Fraction(acceleration) - weight
-    certificate = robot.certify(np.zeros((rows, 1)), np.zeros(1), [acceleration], numbers=numbers)
-    low, high = certificate.tau.lower[-1, 0], certificate.tau.upper[-1, 0]
+    enclosures = robot.enclose(np.zeros((rows, 1)), np.zeros(1), [acceleration], numbers=numbers)
+    low, high = enclosures.tau.lower[-1, 0], enclosures.tau.upper[-1, 0]
     inside = {kind: Fraction(low) <= truth <= Fraction(high) for kind, truth in truths.items()}
     assert inside == {"text": numbers == "text", "doubles": numbers != "text"}
     assert steps(low, high) == 1
@@ -247,7 +247,7 @@ def test_an_axis_of_rational_length_is_divided_exactly(axis: str, unit: tuple[An
     def no_root(square: Fraction) -> Fraction:
         raise AssertionError(square)
 
-    (body,) = written(rttrr_pin.load(PENDULUM.format(axis=axis)).model, "text").bodies(RATIONAL, no_root)
+    (body,) = exact_parameters(rttrr_pin.load(PENDULUM.format(axis=axis)).model, "text").bodies(RATIONAL, no_root)
     assert list(body.axis) == [Fraction(x) for x in unit]
 
 
@@ -270,16 +270,16 @@ def test_rotations_axes_and_turned_tensors_are_not_rounded(rows: int) -> None:
         N = I * u * mpmath.mpf(0.3)
         F = R.T * mpmath.matrix([0, 0, mpmath.mpf(9.81)]) * mpmath.mpf(0.1)
         found = {
-            numbers: robot.certify(np.zeros((rows, 1)), [0.0], [0.3], numbers=numbers)
+            numbers: robot.enclose(np.zeros((rows, 1)), [0.0], [0.3], numbers=numbers)
             for numbers in ("read", "doubles")
         }
         inside = {
             numbers: [
                 mpmath.mpf(ends.lower[0, 0, k]) <= truth[k] <= mpmath.mpf(ends.upper[0, 0, k])
-                for truth, ends in ((F, certificate.F), (N, certificate.N))
+                for truth, ends in ((F, enclosures.F), (N, enclosures.N))
                 for k in range(3)
             ]
-            for numbers, certificate in found.items()
+            for numbers, enclosures in found.items()
         }
     assert all(inside["read"])
     assert not all(inside["doubles"])
@@ -320,7 +320,7 @@ def test_a_chain_of_followers_is_multiplied_out_exactly() -> None:
     direct = text.replace('joint="joint_2" multiplier="0.1"', 'joint="joint_3" multiplier="0.07" offset="0.03"')
     assert direct != text
     q, v, a = np.full((3, 1), 0.4)
-    one, other = (rttrr_pin.load(x).certify(q, v, a, numbers="text") for x in (text, direct))
+    one, other = (rttrr_pin.load(x).enclose(q, v, a, numbers="text") for x in (text, direct))
     for key, ends in one.items():
         np.testing.assert_array_equal(ends.lower, getattr(other, key).lower)
 
@@ -328,19 +328,19 @@ def test_a_chain_of_followers_is_multiplied_out_exactly() -> None:
 def test_drives_of_the_file_are_its_decimals_and_others_are_doubles() -> None:
     text = PENDULUM.format(axis="0 1 0").replace("</joint>", '<dynamics damping="0.1" friction="0.3"/></joint>')
     robot = rttrr_pin.load(text, friction=True)
-    loaded, bare = (x.certify([0.0], [1.0], [0.0], numbers="text") for x in (robot, rttrr_pin.load(text)))
+    loaded, bare = (x.enclose([0.0], [1.0], [0.0], numbers="text") for x in (robot, rttrr_pin.load(text)))
     weight = -Fraction("0.1") * Fraction("0.3") * Fraction(9.81)
-    for certificate, drive in ((loaded, Fraction("0.4")), (bare, 0)):
-        assert Fraction(certificate.tau.lower[0]) <= weight + drive <= Fraction(certificate.tau.upper[0])
-    geared = robot.with_drives({"j": rttrr_pin.Drive(armature=0.1, damping=0.2, friction=0.3)})
-    tau = geared.certify([0.0], [1.0], [0.0], numbers="text").tau
+    for enclosures, effects in ((loaded, Fraction("0.4")), (bare, 0)):
+        assert Fraction(enclosures.tau.lower[0]) <= weight + effects <= Fraction(enclosures.tau.upper[0])
+    geared = robot.with_joint_effects({"j": rttrr_pin.JointEffects(armature=0.1, damping=0.2, friction=0.3)})
+    tau = geared.enclose([0.0], [1.0], [0.0], numbers="text").tau
     assert Fraction(tau.lower[0]) <= weight + Fraction(0.2) + Fraction("0.3") <= Fraction(tau.upper[0])
 
 
 def test_a_robot_without_a_file_has_no_decimals(rttrr: Robot) -> None:
     bare = Robot(replace(rttrr.model, urdf=""))
     with pytest.raises(InputError, match="was made from numbers and has no file.*pass numbers='doubles'"):
-        bare.certify(np.zeros(5), np.zeros(5), np.zeros(5), numbers="text")
+        bare.enclose(np.zeros(5), np.zeros(5), np.zeros(5), numbers="text")
 
 
 def altered(model: Model, what: str) -> Model:
@@ -367,7 +367,7 @@ def test_a_model_that_was_altered_is_not_its_file(name: str, what: str) -> None:
     zeros = np.zeros(robot.model.nv)
     kind = "joint" if what in ("axis", "R", "p") else "link"
     with pytest.raises(InputError, match=f"{kind} .* is not what its file says.*altered since"):
-        Robot(altered(robot.model, what)).certify(zeros, zeros, zeros, numbers="text")
+        Robot(altered(robot.model, what)).enclose(zeros, zeros, zeros, numbers="text")
 
 
 # Inputs and shapes
@@ -376,21 +376,21 @@ def test_a_model_that_was_altered_is_not_its_file(name: str, what: str) -> None:
 def test_shapes_follow_the_batch(rttrr: Robot) -> None:
     q = np.zeros((2, 1, 5))
     payload = Wrench(np.ones((3, 3)))
-    certificate = rttrr.certify(q, np.zeros(5), np.zeros(5), payload)
+    enclosures = rttrr.enclose(q, np.zeros(5), np.zeros(5), payload)
     plain = rttrr.inverse_dynamics(q, np.zeros(5), np.zeros(5), payload)
     for key, x in plain.items():
-        ends = getattr(certificate, key)
+        ends = getattr(enclosures, key)
         assert ends.lower.shape == ends.upper.shape == ends.mid.shape == x.shape
-    assert certificate.bits.shape == certificate.tight.shape == (2, 3)
-    assert (certificate.links, certificate.joints) == (plain.links, plain.joints)
-    one = certificate[1]
-    np.testing.assert_array_equal(one.f.lower, certificate.f.lower[1])
-    assert rttrr.certify(np.zeros((0, 5)), np.zeros(5), np.zeros(5)).f.lower.shape == (0, 6, 3)
+    assert enclosures.bits.shape == enclosures.tight.shape == (2, 3)
+    assert (enclosures.links, enclosures.joints) == (plain.links, plain.joints)
+    one = enclosures[1]
+    np.testing.assert_array_equal(one.f.lower, enclosures.f.lower[1])
+    assert rttrr.enclose(np.zeros((0, 5)), np.zeros(5), np.zeros(5)).f.lower.shape == (0, 6, 3)
 
 
 def test_dicts_by_joint_name_are_taken(rttrr: Robot) -> None:
     by_name = dict(zip(rttrr.joint_names, (0.1, 0.2, 0.3, 0.4, 0.5), strict=True))
-    named, plain = (rttrr.certify(q, np.zeros(5), np.zeros(5)) for q in (by_name, (0.1, 0.2, 0.3, 0.4, 0.5)))
+    named, plain = (rttrr.enclose(q, np.zeros(5), np.zeros(5)) for q in (by_name, (0.1, 0.2, 0.3, 0.4, 0.5)))
     np.testing.assert_array_equal(named.n.lower, plain.n.lower)
 
 
@@ -400,26 +400,26 @@ def test_numbers_that_are_none_are_refused(rttrr: Robot, bad: float, which: int)
     arrays = [np.zeros(5) for _ in "qva"]
     arrays[which][3] = bad
     with pytest.raises(NumberError, match=f"{'qva'[which]}.3., joint 'joint_4', is {bad}"):
-        rttrr.certify(*arrays)
+        rttrr.enclose(*arrays)
 
 
 def test_bad_arguments_are_refused(rttrr: Robot) -> None:
     with pytest.raises(ShapeError, match="expected 5"):
-        rttrr.certify(np.zeros(4), np.zeros(5), np.zeros(5))
+        rttrr.enclose(np.zeros(4), np.zeros(5), np.zeros(5))
     with pytest.raises(InputError, match="numbers is 'decimals': expected one of 'doubles', 'read', 'text'"):
-        rttrr.certify(np.zeros(5), np.zeros(5), np.zeros(5), numbers="decimals")  # type: ignore[arg-type]
+        rttrr.enclose(np.zeros(5), np.zeros(5), np.zeros(5), numbers="decimals")  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("size", [1e200, -1e300])
 def test_a_result_beyond_float64_is_refused(rttrr: Robot, size: float) -> None:
     with pytest.raises(NumberError, match="overflows in state 0"):
-        rttrr.certify(np.full(5, 0.3), np.full(5, size), np.zeros(5))
+        rttrr.enclose(np.full(5, 0.3), np.full(5, size), np.zeros(5))
 
 
 def test_a_load_of_the_batch_goes_with_its_state(rttrr: Robot) -> None:
     forces = np.array([[1.0, 2.0, 3.0], [-4.0, 0.0, 5.0]])
     zeros = np.zeros((2, 5))
-    both = certify(rttrr.model, zeros, zeros, zeros, [Load(5, forces, np.zeros(3))])
+    both = enclose(rttrr.model, zeros, zeros, zeros, [Load(5, forces, np.zeros(3))])
     for k in range(2):
-        one = certify(rttrr.model, zeros[k], zeros[k], zeros[k], [Load(5, forces[k], np.zeros(3))])
+        one = enclose(rttrr.model, zeros[k], zeros[k], zeros[k], [Load(5, forces[k], np.zeros(3))])
         np.testing.assert_array_equal(one.f.lower, both.f.lower[k])

@@ -8,16 +8,16 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+from tests.core.test_newton_euler import mp_arithmetic
 
 import rttrr_pin
-from core.test_newton_euler import mp_arithmetic
 from rttrr_pin import Robot
 from rttrr_pin.core.dynamics import bodies, dynamics, evaluate
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.scalars import UNIT_ROUNDOFF
 from rttrr_pin.exact import BOUNDED, Bounded, bounded_dynamics
-from rttrr_pin.validation import FAMILIES, Sampler
+from rttrr_pin.validation import SAMPLINGS, Sampler
 from support.serial_chains import random_chain
 from support.tolerances import ROUNDING
 from support.trees import random_tree
@@ -43,14 +43,14 @@ def test_no_true_error_exceeds_its_bound_in_trees(seed: int, base: Any) -> None:
 
 
 @pytest.mark.parametrize("seed", [0, 1])
-@pytest.mark.parametrize("family", FAMILIES)
-def test_no_true_error_exceeds_its_bound(robot: Robot, family: str, seed: int) -> None:
-    check_bounds(robot, family, seed)
+@pytest.mark.parametrize("sampling", SAMPLINGS)
+def test_no_true_error_exceeds_its_bound(robot: Robot, sampling: str, seed: int) -> None:
+    check_bounds(robot, sampling, seed)
 
 
-def check_bounds(robot: Robot, family: str, seed: int) -> None:
+def check_bounds(robot: Robot, sampling: str, seed: int) -> None:
     """Against 60 digits on the same doubles, component by component."""
-    states = Sampler(robot.model, family, seed, robot.link_names[-1]).draw(0, 12)
+    states = Sampler(robot.model, sampling, seed, robot.link_names[-1]).draw(0, 12)
     values, bounds = bounded_dynamics(robot.model, states.q, states.v, states.a, states.loads)
     with mpmath.workdps(60):
         for k in range(12):

@@ -7,16 +7,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.laws.test_laws import BASES, BUNDLED, driven, put_in
 
 import rttrr_pin
-from laws.test_laws import BASES, BUNDLED, driven, put_in
 from rttrr_pin import Robot
 from rttrr_pin.cli import main
 from rttrr_pin.core import newton_euler
 from rttrr_pin.core import scalars as arithmetic
-from rttrr_pin.core.joint import Drive, Joint, JointType
+from rttrr_pin.core.joint import Joint, JointEffects, JointType
 from rttrr_pin.core.model import Link, Model
-from rttrr_pin.exact.intervals import BALL, ball, precision
+from rttrr_pin.exact.intervals import INTERVAL, interval, precision
 from rttrr_pin.implementations import make_oracle
 from rttrr_pin.implementations.lagrange import lagrange
 from rttrr_pin.validation import Sampler, compare_state, validate
@@ -27,7 +27,9 @@ from support.trees import random_tree
 @pytest.mark.parametrize("base", BASES)
 @pytest.mark.parametrize("name", BUNDLED)
 def test_bundled_arms_agree(name: str, base: Any) -> None:
-    result = validate(driven(rttrr_pin.load(name, base=base)), 200, family="mixed", payload="random", oracle="lagrange")
+    result = validate(
+        driven(rttrr_pin.load(name, base=base)), 200, sampling="mixed", payload="random", oracle="lagrange"
+    )
     assert result.agrees
     assert {row.quantity for row in result.rows} == set(result.whole) == {"tau"}
 
@@ -62,7 +64,7 @@ def test_a_robot_made_from_numbers_can_be_validated() -> None:
     turner = Joint("turn", JointType.REVOLUTE, parent=0, p=np.array([0.5, 0.0, 0.0]))
     links = (Link("a", 2.0), Link("b", 1.0, np.array([0.0, 0.25, 0.0]), np.eye(3)))
     robot = Robot(Model("numbers", Link("base"), links, (slider, turner)))
-    assert validate(robot.with_drives({"slide": Drive(armature=3.0)}), 50, oracle="lagrange").agrees
+    assert validate(robot.with_joint_effects({"slide": JointEffects(armature=3.0)}), 50, oracle="lagrange").agrees
 
 
 @pytest.mark.parametrize("slip", ["Coriolis", "gyroscopic", "moment arm"])
@@ -73,16 +75,16 @@ def test_a_slip_in_the_recursion_is_seen(rttrr: Robot, monkeypatch: pytest.Monke
         "moment arm": ("joint.R @ n + joint.p.cross(R_f)", "joint.R @ n"),
     }[slip]
     put_in(monkeypatch, newton_euler, old, new)
-    assert not validate(rttrr, 50, family="large-velocities", oracle="lagrange").agrees
+    assert not validate(rttrr, 50, sampling="large-velocities", oracle="lagrange").agrees
 
 
 def test_the_recursion_and_lagrange_meet_in_balls(rttrr: Robot) -> None:
     """At 200 bits they agree to 50 digits."""
     with precision(200):
         drawn = Sampler(rttrr.model, seed=7).draw(0, 1)
-        q, v, a = ([ball(float(x)) for x in values[0]] for values in (drawn.q, drawn.v, drawn.a))
-        ours = arithmetic.dynamics(rttrr.model, BALL, q, v, a).tau
-        theirs, _ = lagrange(rttrr.model, BALL, q, v, a)
+        q, v, a = ([interval(float(x)) for x in values[0]] for values in (drawn.q, drawn.v, drawn.a))
+        ours = arithmetic.dynamics(rttrr.model, INTERVAL, q, v, a).tau
+        theirs, _ = lagrange(rttrr.model, INTERVAL, q, v, a)
         for x, y in zip(ours, theirs, strict=True):
             assert (x - y).contains(0)
             assert float((x - y).rad()) < 1e-50

@@ -9,10 +9,10 @@ from typing import Any
 import mujoco
 import numpy as np
 import pytest
+from tests.implementations.test_pinocchio import TAMPERED, with_joint, with_link
 
 import rttrr_pin
-from implementations.test_pinocchio import TAMPERED, with_joint, with_link
-from rttrr_pin import Drive, Robot, Wrench
+from rttrr_pin import JointEffects, Robot, Wrench
 from rttrr_pin import implementations as oracles
 from rttrr_pin.core.joint import Joint, JointType, Limits, Mimic
 from rttrr_pin.core.model import Link, Model
@@ -21,7 +21,7 @@ from rttrr_pin.implementations import make_oracle
 from rttrr_pin.implementations.mujoco import MujocoOracle
 from rttrr_pin.implementations.mujoco_model import PREFIX
 from rttrr_pin.validation import Sampler, validate
-from rttrr_pin.validation.comparison_run import Contest
+from rttrr_pin.validation.comparison_run import ComparisonRun
 from support.serial_chains import random_chain
 from support.tolerances import ROUNDING, WELL_BELOW, norm_error
 from support.trees import random_tree
@@ -33,15 +33,15 @@ def worst_share(robot: Robot, states: int = 200, **options: Any) -> float:
     return worst.share.value
 
 
-@pytest.mark.parametrize("family", ["uniform", "mixed", "large-velocities"])
+@pytest.mark.parametrize("sampling", ["uniform", "mixed", "large-velocities"])
 @pytest.mark.parametrize("base", ["fixed", "floating"])
 @pytest.mark.parametrize("name", ["rttrr", "trr", "trtr", "trtrr", "trttr"])
-def test_bundled_arms_agree(name: str, base: Any, family: str) -> None:
-    assert worst_share(rttrr_pin.load(name, base=base), family=family, payload="random") <= WELL_BELOW
+def test_bundled_arms_agree(name: str, base: Any, sampling: str) -> None:
+    assert worst_share(rttrr_pin.load(name, base=base), sampling=sampling, payload="random") <= WELL_BELOW
 
 
 def test_awkward_chains_agree(robot: Robot) -> None:
-    assert worst_share(robot, family="mixed") <= WELL_BELOW
+    assert worst_share(robot, sampling="mixed") <= WELL_BELOW
 
 
 @pytest.mark.parametrize("seed", range(12))
@@ -52,7 +52,7 @@ def test_trees_of_all_joint_types_agree(seed: int, base: Any) -> None:
     link = robot.link_names[seed % len(robot.link_names)]
     for axes in ("link", "base"):
         payload = Wrench((10.0, -20.0, 30.0), (1.0, 2.0, -3.0), link, axes)  # type: ignore[arg-type]
-        assert worst_share(robot, 30, family="mixed", payload=payload) <= WELL_BELOW
+        assert worst_share(robot, 30, sampling="mixed", payload=payload) <= WELL_BELOW
 
 
 def test_drives_are_added_by_our_rule() -> None:
@@ -62,7 +62,7 @@ def test_drives_are_added_by_our_rule() -> None:
     )
     for robot in (rttrr_pin.load(text), rttrr_pin.load(text, friction=True)):
         assert worst_share(robot) <= WELL_BELOW
-    driven = rttrr_pin.load(text).with_drives({"joint_2": Drive(armature=0.7, damping=0.2, friction=5.0)})
+    driven = rttrr_pin.load(text).with_joint_effects({"joint_2": JointEffects(armature=0.7, damping=0.2, friction=5.0)})
     assert worst_share(driven) <= WELL_BELOW
 
 
@@ -189,7 +189,7 @@ def test_an_error_of_1e_10_in_one_mass_of_a_tree_is_seen(base: Any, monkeypatch:
         if link.mass:
             heavier = replace(link, mass=link.mass * (1 + 1e-10))
             other = Robot(replace(model, links=(*model.links[:i], heavier, *model.links[i + 1 :])))
-            contest = Contest.of(other, 0, "uniform", None, "mujoco", 5)
+            contest = ComparisonRun.of(other, 0, "uniform", None, "mujoco", 5)
             gaps = zip(contest.rows, contest.gaps(contest.sampler.draw(0, 5)), strict=True)
             failed = {(row.quantity, row.at) for (_, row), gap in gaps if gap.share.max() > 1.0}
             assert {("F", link.name), ("f", link.name)} <= failed
@@ -254,4 +254,4 @@ def test_mujoco_leaves_no_log_behind(tmp_path: Path, monkeypatch: pytest.MonkeyP
 def test_the_allowance_holds_while_it_grows_with_depth_and_reach() -> None:
     """A long chain far from the world's origin, at high rates: what cancels is large, and so is what is allowed."""
     robot = rttrr_pin.load(random_chain(1, ("revolute", "prismatic") * 12), base="floating")
-    assert worst_share(robot, 100, family="large-velocities") <= WELL_BELOW
+    assert worst_share(robot, 100, sampling="large-velocities") <= WELL_BELOW

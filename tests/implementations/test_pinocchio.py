@@ -11,7 +11,7 @@ import pytest
 
 import rttrr_pin
 from rttrr_pin import Robot
-from rttrr_pin.core.joint import Drive, Joint, JointType, Limits, Mimic
+from rttrr_pin.core.joint import Joint, JointEffects, JointType, Limits, Mimic
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.errors import InputError, ModelMismatchError, OracleError, UnknownNameError
 from rttrr_pin.implementations import make_oracle
@@ -45,8 +45,8 @@ TAMPERED: dict[str, tuple[Any, str]] = {
     "velocity": (lambda m: with_joint(m, limits=replace(m.joints[2].limits, velocity=9.0)), "joint 'joint_3' velocity"),
     "effort": (lambda m: with_joint(m, limits=replace(m.joints[2].limits, effort=9.0)), "joint 'joint_3' effort"),
     "name": (lambda m: with_joint(m, name="joint_x"), "moving joints: joint_1"),
-    "damping": (lambda m: with_joint(m, dynamics=Drive(damping=0.1)), "joint 'joint_3' damping"),
-    "friction": (lambda m: with_joint(m, dynamics=Drive(friction=0.1)), "joint 'joint_3' friction"),
+    "damping": (lambda m: with_joint(m, dynamics=JointEffects(damping=0.1)), "joint 'joint_3' damping"),
+    "friction": (lambda m: with_joint(m, dynamics=JointEffects(friction=0.1)), "joint 'joint_3' friction"),
 }
 
 

@@ -184,10 +184,10 @@ def pinocchio_does(text: str, document: Document) -> Does:
     except ValueError:
         return Does.REFUSE
     same = model.nv == freedom(document)
-    for name, lump in lumps(document).items():
+    for name, regroup in lumps(document).items():
         if name != document.root:
             loaded = model.inertias[model.getJointId(document.carried_by[name].name)]
-            same &= near(loaded.mass, lump.mass) and near(moments(loaded.inertia), moments(lump.inertia))
+            same &= near(loaded.mass, regroup.mass) and near(moments(loaded.inertia), moments(regroup.inertia))
     return Does.ACCEPT if same else Does.ALTER
 
 
@@ -204,12 +204,12 @@ def mujoco_does(text: str, document: Document) -> Does:
     except ValueError:
         return Does.REFUSE
     same = model.nv == freedom(document)
-    for name, lump in lumps(document).items():
+    for name, regroup in lumps(document).items():
         if name != document.root:
             body = model.body(name)
-            off, size = np.linalg.norm(tensor_of(body) - lump.inertia), abs(np.trace(lump.inertia))
-            same &= near(body.mass[0], lump.mass) and bool(off <= CONSUMER_AXES * size)
-            same &= not lump.mass or bool(np.linalg.norm(body.ipos - lump.first / lump.mass) <= CONSUMER)
+            off, size = np.linalg.norm(tensor_of(body) - regroup.inertia), abs(np.trace(regroup.inertia))
+            same &= near(body.mass[0], regroup.mass) and bool(off <= CONSUMER_AXES * size)
+            same &= not regroup.mass or bool(np.linalg.norm(body.ipos - regroup.first / regroup.mass) <= CONSUMER)
     for link in document.joints:
         if link.type in ("revolute", "prismatic") and link.limit is not None:
             wanted = (link.limit.get("lower", 0.0), link.limit.get("upper", 0.0))

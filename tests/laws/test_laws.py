@@ -17,16 +17,16 @@ from rttrr_pin.cli import main
 from rttrr_pin.core import joint_motion, newton_euler
 from rttrr_pin.core import scalars as arithmetic
 from rttrr_pin.core.algebra import ZERO, Vector
-from rttrr_pin.core.joint import Drive
+from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.newton_euler import Payload
 from rttrr_pin.errors import InputError, UnknownNameError
-from rttrr_pin.exact.intervals import BALL, ball, precision
+from rttrr_pin.exact.intervals import INTERVAL, interval, precision
 from rttrr_pin.laws import LawReport, check_laws
 from rttrr_pin.laws import balance as law_balance
 from rttrr_pin.laws.case import Case
 from rttrr_pin.laws.table import LAWS
-from rttrr_pin.validation import FAMILIES, Sampler
+from rttrr_pin.validation import SAMPLINGS, Sampler
 from support.serial_chains import random_chain
 from support.trees import random_tree
 
@@ -39,7 +39,7 @@ IDS = [law.id for law in LAWS]
 def driven(robot: Robot) -> Robot:
     """Armature, damping and friction in every joint that moves, followers too."""
     moving = [joint.name for joint in robot.model.joints if joint.nv]
-    return robot.with_drives({name: Drive(0.25 + i, 0.5, 0.75) for i, name in enumerate(moving)})
+    return robot.with_joint_effects({name: JointEffects(0.25 + i, 0.5, 0.75) for i, name in enumerate(moving)})
 
 
 def broken(report: LawReport) -> list[str]:
@@ -49,7 +49,7 @@ def broken(report: LawReport) -> list[str]:
 @pytest.mark.parametrize("base", BASES)
 @pytest.mark.parametrize("name", BUNDLED)
 def test_laws_hold_on_bundled_arms(name: str, base: Any) -> None:
-    report = check_laws(driven(rttrr_pin.load(name, base=base)), 120, family="mixed")
+    report = check_laws(driven(rttrr_pin.load(name, base=base)), 120, sampling="mixed")
     assert broken(report) == []
     assert [row.law.id for row in report.rows] == IDS
     assert all(row.numbers for row in report.rows)
@@ -70,13 +70,13 @@ def test_the_trees_hold_every_kind_of_joint() -> None:
 
 
 def test_laws_hold_on_awkward_chains(robot: Robot) -> None:
-    assert broken(check_laws(robot, 60, family="mixed")) == []
+    assert broken(check_laws(robot, 60, sampling="mixed")) == []
 
 
-@pytest.mark.parametrize("family", FAMILIES)
-def test_laws_hold_in_every_family_of_states(rttrr: Robot, family: str) -> None:
+@pytest.mark.parametrize("sampling", SAMPLINGS)
+def test_laws_hold_in_every_family_of_states(rttrr: Robot, sampling: str) -> None:
     payload = Wrench((1, 2, 3), (4, 5, 6), expressed_in="base")
-    assert broken(check_laws(rttrr, 60, 3, family, payload)) == []
+    assert broken(check_laws(rttrr, 60, 3, sampling, payload)) == []
 
 
 def test_laws_hold_in_one_state_and_without_gravity() -> None:
@@ -179,13 +179,13 @@ def test_balls_prove_the_laws_at_a_state(rttrr: Robot) -> None:
     """At 200 bits what is zero lies in balls around zero that are far narrower than rounding."""
     with precision(200):
         drawn = Sampler(rttrr.model, seed=7).draw(0, 1)
-        q, v, a = ([ball(float(x)) for x in values[0]] for values in (drawn.q, drawn.v, drawn.a))
-        load = Vector.of((1, 2, 3), ball)
-        case = Case(rttrr.model, BALL, q, v, a, [Payload(4, load, load), Payload(2, load, load, in_base=True)])
+        q, v, a = ([interval(float(x)) for x in values[0]] for values in (drawn.q, drawn.v, drawn.a))
+        load = Vector.of((1, 2, 3), interval)
+        case = Case(rttrr.model, INTERVAL, q, v, a, [Payload(4, load, load), Payload(2, load, load, in_base=True)])
         proven = [law for law in LAWS if law.id not in ("M403", "M405")]
         for law in proven:
             for x in law.residual(case):
-                enclosed = ball(0.0) + x
+                enclosed = interval(0.0) + x
                 assert enclosed.contains(0), law.id
                 assert float(enclosed.rad()) < 1e-50, law.id
 

@@ -121,7 +121,7 @@ UNUSABLE = {
     "no-such-option": (["validate", "--sed", "1"], "No such option: --sed"),
     "states-word": (["validate", "--states", "many"], "--states"),
     "no-states": (["validate", "--states", "0"], "states is 0"),
-    "family": (["validate", "--family", "corner"], "did you mean corners"),
+    "sampling": (["validate", "--family", "corner"], "did you mean corners"),
     "payload": (["validate", "--payload", "1,2,3"], "expected 6 numbers"),
     "payload-word": (["validate", "--payload", "a,b,c,d,e,f"], "expected 6 numbers"),
     "payload-link": (["validate", "--payload", "1,2,3,4,5,6", "--payload-link", "hand"], "no link is called 'hand'"),

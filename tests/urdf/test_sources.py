@@ -47,7 +47,7 @@ def numbers_of(model: Model) -> list[Any]:
         found += [link.mass, *link.com]
         found += [] if link.rotated else link.inertia.ravel().tolist()
     for joint in model.joints:
-        found += [joint.name, joint.type, joint.parent, *joint.p, *joint.axis, joint.limits, joint.mimic, joint.drive]
+        found += [joint.name, joint.type, joint.parent, *joint.p, *joint.axis, joint.limits, joint.mimic, joint.effects]
     return found
 
 
@@ -324,7 +324,7 @@ def test_what_yourdfpy_would_not_write_is_kept(tmp_path: Path) -> None:
     assert "mimic" not in robot.write_xml_string().decode()
     joint = rttrr_pin.load(robot, friction=True).model.joints[1]
     assert joint.mimic is not None
-    assert (joint.mimic.joint, joint.mimic.multiplier, joint.drive.damping) == (0, -0.1, 0.3)
+    assert (joint.mimic.joint, joint.mimic.multiplier, joint.effects.damping) == (0, -0.1, 0.3)
 
 
 @pytest.mark.parametrize("pitch", [0.0, 0.7, math.pi / 2, -math.pi / 2, math.pi / 2 - 1e-9, 3.0])

@@ -50,7 +50,7 @@ def test_the_outcome_does_not_depend_on_the_workers(folder: Path) -> None:
     ("task", "error", "message"),
     [
         (Task(states=0), InputError, "states is 0"),
-        (Task(family="gauss"), UnknownNameError, "no family"),
+        (Task(sampling="gauss"), UnknownNameError, "no family"),
         (Task(oracle="bullet"), UnknownNameError, "no oracle"),
     ],
     ids=["states", "family", "oracle"],

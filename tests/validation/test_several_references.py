@@ -8,20 +8,20 @@ from typing import Any
 
 import numpy as np
 import pytest
+from tests.validation.test_validate import Liar
+from tests.validation.test_validate import liar as nameless_liar
 
 import rttrr_pin
 from rttrr_pin import LinkWrenches, Robot
 from rttrr_pin.cli import main
 from rttrr_pin.errors import InputError, UnknownNameError
-from rttrr_pin.exact import Off, Settlement, Side, verdict_of
+from rttrr_pin.exact import Adjudication, Assessment, Deviation, verdict_of
 from rttrr_pin.validation import compare_state, validate
-from rttrr_pin.validation.compare import SETTLED
+from rttrr_pin.validation.compare import ADJUDICATED
 from rttrr_pin.validation.ours import Ours
 from rttrr_pin.validation.report_data import validation_data
 from rttrr_pin.validation.search import search
 from support.trees import random_tree
-from validation.test_validate import Liar
-from validation.test_validate import liar as nameless_liar
 
 __all__ = ["nameless_liar"]
 
@@ -53,7 +53,7 @@ def test_each_oracle_is_seen_as_if_it_were_alone(rttrr: Robot) -> None:
 def test_a_run_with_one_oracle_in_a_list_is_that_run(rttrr: Robot) -> None:
     one, listed = validate(rttrr, 50), validate(rttrr, 50, oracle=["pinocchio"])
     assert (one.rows, one.whole, one.oracle, one.failing) == (listed.rows, listed.whole, listed.oracle, listed.failing)
-    assert one.settled[0].verdict == listed.settled[0].verdict
+    assert one.adjudicated[0].verdict == listed.adjudicated[0].verdict
 
 
 def test_ours_is_computed_once_for_all(rttrr: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -71,15 +71,15 @@ def test_ours_is_computed_once_for_all(rttrr: Robot, monkeypatch: pytest.MonkeyP
 
 def test_trees_agree_with_all(rttrr: Robot) -> None:
     robot = rttrr_pin.load(random_tree(4, 6), base="floating", friction=True)
-    assert validate(robot, 20, family="mixed", oracle=ALL).agrees
+    assert validate(robot, 20, sampling="mixed", oracle=ALL).agrees
 
 
 def test_one_liar_fails_the_run_and_the_umpire_names_it(rttrr: Robot, liar: type[Liar]) -> None:
     liar.spoil = staticmethod(wrong_in_one)
     result = validate(rttrr, 100, oracle=("pinocchio", "mujoco", "liar"))
     assert [other.agrees for other in result.against] == [True, True, False] and not result.agrees
-    assert 0 < result.failing <= SETTLED
-    *failing, passing = result.settled_states
+    assert 0 < result.failing <= ADJUDICATED
+    *failing, passing = result.adjudicated_states
     assert len(failing) == result.failing
     for state in failing:
         assert len({one.state for one in state}) == 1
@@ -99,14 +99,14 @@ def test_a_state_that_fails_against_several_counts_once(rttrr: Robot, monkeypatc
 
     monkeypatch.setattr(Ours, "__call__", wrong)
     result = validate(rttrr, 6, oracle=("pinocchio", "mujoco"))
-    assert result.failing == 6 and len(result.settled_states) == 6
-    told = verdict_of(result.settled_states[0])
+    assert result.failing == 6 and len(result.adjudicated_states) == 6
+    told = verdict_of(result.adjudicated_states[0])
     assert told.startswith("pinocchio and mujoco are right to rounding; ours is off by ")
     assert told.endswith("first in n of link_5")
 
 
-def side(name: str, share: float) -> Side:
-    return Side(name, (Off("F", "link_1", 3.0, 0.1), Off("tau", "joint_1", 7.0, share)))
+def side(name: str, share: float) -> Assessment:
+    return Assessment(name, (Deviation("F", "link_1", 3.0, 0.1), Deviation("tau", "joint_1", 7.0, share)))
 
 
 @pytest.mark.parametrize(
@@ -121,20 +121,20 @@ def side(name: str, share: float) -> Side:
 )
 def test_the_umpire_s_words(shares: tuple[float, float, float], told: str) -> None:
     ours, a, b = (side(name, share) for name, share in zip(("ours", "a", "b"), shares, strict=True))
-    assert verdict_of([Settlement(3, 128, ours, a), Settlement(3, 128, ours, b)]).startswith(told)
+    assert verdict_of([Adjudication(3, 128, ours, a), Adjudication(3, 128, ours, b)]).startswith(told)
 
 
 def test_ours_is_wrong_where_any_settlement_has_it_wrong() -> None:
     """An oracle that gives tau alone still sees all of ours."""
-    short = Side("ours", (Off("tau", "joint_1", 1.0, 0.1),))
+    short = Assessment("ours", (Deviation("tau", "joint_1", 1.0, 0.1),))
     told = verdict_of(
-        [Settlement(3, 128, short, side("a", 0.1)), Settlement(3, 128, side("ours", 2.0), side("b", 0.1))]
+        [Adjudication(3, 128, short, side("a", 0.1)), Adjudication(3, 128, side("ours", 2.0), side("b", 0.1))]
     )
     assert told.startswith("a and b are right to rounding; ours is off")
 
 
 def test_one_settlement_keeps_its_words() -> None:
-    one = Settlement(3, 128, side("ours", 0.1), side("a", 2.0))
+    one = Adjudication(3, 128, side("ours", 0.1), side("a", 2.0))
     assert verdict_of([one]) == one.verdict
 
 
@@ -158,7 +158,7 @@ def test_one_state_beside_each_oracle(rttrr: Robot) -> None:
         alone = compare_state(rttrr, 7, oracle=view.oracle.split()[0], states=50)
         np.testing.assert_array_equal(view.theirs.tau, alone.theirs.tau)
         assert [gap.share[0] for gap in view.gaps] == [gap.share[0] for gap in alone.gaps]
-        assert view.settled.verdict == alone.settled.verdict
+        assert view.adjudicated.verdict == alone.adjudicated.verdict
 
 
 def test_one_oracle_that_is_off_fails_the_state(rttrr: Robot, liar: type[Liar]) -> None:

@@ -12,16 +12,16 @@ from hypothesis import strategies as st
 import rttrr_pin
 from rttrr_pin import Robot
 from rttrr_pin.errors import InputError, UnknownNameError
-from rttrr_pin.validation import FAMILIES, Sampler
+from rttrr_pin.validation import SAMPLINGS, Sampler
 from support.serial_chains import EXAMPLES
 
 
-@pytest.mark.parametrize("family", FAMILIES)
+@pytest.mark.parametrize("sampling", SAMPLINGS)
 @given(first=st.integers(0, 10**9), count=st.integers(1, 40), at=st.integers(0, 39))
 def test_state_k_is_the_same_however_the_work_is_cut(
-    rttrr: Robot, family: str, first: int, count: int, at: int
+    rttrr: Robot, sampling: str, first: int, count: int, at: int
 ) -> None:
-    sampler = Sampler(rttrr.model, family, 7, "tool")
+    sampler = Sampler(rttrr.model, sampling, 7, "tool")
     k = at % count
     together, alone = sampler.draw(first, count), sampler.draw(first + k, 1)
     for name in "qva":
@@ -36,12 +36,12 @@ def test_a_payload_does_not_change_the_states(rttrr: Robot) -> None:
     np.testing.assert_array_equal(with_.a, without.a)
 
 
-@pytest.mark.parametrize("family", FAMILIES)
-def test_seeds_and_states_differ(rttrr: Robot, family: str) -> None:
+@pytest.mark.parametrize("sampling", SAMPLINGS)
+def test_seeds_and_states_differ(rttrr: Robot, sampling: str) -> None:
     """Two seeds, and two states of one seed, have nothing in common where the family leaves room."""
-    if family == "zeros":
-        family = "uniform"
-    one, other = (Sampler(rttrr.model, family, seed).draw(0, 64) for seed in (1, 2))
+    if sampling == "zeros":
+        sampling = "uniform"
+    one, other = (Sampler(rttrr.model, sampling, seed).draw(0, 64) for seed in (1, 2))
     assert not np.array_equal(one.q, other.q)
     assert len({row.tobytes() for row in np.hstack([one.q, one.v, one.a])}) > 32
 

@@ -113,10 +113,10 @@ def test_a_longer_run_begins_with_the_shorter(rttrr: Robot) -> None:
 
 
 def test_the_worst_state_can_be_had_again(rttrr: Robot) -> None:
-    result = validate(rttrr, 2000, seed=4, payload="random", family="mixed")
+    result = validate(rttrr, 2000, seed=4, payload="random", sampling="mixed")
     worst = result.worst
     assert worst is not None
-    one = compare_state(rttrr, worst.share.state, seed=4, payload="random", family="mixed", states=2000)
+    one = compare_state(rttrr, worst.share.state, seed=4, payload="random", sampling="mixed", states=2000)
     index = result.rows.index(worst)
     assert one.gaps[index].share[0] == worst.share.value
     assert one.agrees
@@ -199,11 +199,11 @@ def test_a_robot_without_joints_is_no_agreement() -> None:
         ({"seed": None}, "seed is None"),
         ({"payload": 3}, "payload is a int, expected a Wrench"),
         ({"payload": (1, 2, 3)}, "payload is a tuple, expected a Wrench"),
-        ({"family": ["uniform"]}, "no family of states"),
+        ({"sampling": ["uniform"]}, "no family of states"),
         ({"states": -5}, "states is -5"),
         ({"payload": "heavy"}, "expected 'random' or a Wrench"),
         ({"payload": Wrench(np.zeros((4, 3)))}, "has a batch axis"),
-        ({"family": "gaussian"}, "no family of states is called 'gaussian'"),
+        ({"sampling": "gaussian"}, "no family of states is called 'gaussian'"),
         ({"oracle": "bullet"}, "no oracle is called 'bullet'"),
     ],
     ids=str,

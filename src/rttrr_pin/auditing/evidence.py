@@ -19,7 +19,8 @@ from rttrr_pin.derivation.chain import SymbolicRobot
 from rttrr_pin.derivation.motion import angles
 from rttrr_pin.derivation.ring import evaluate
 from rttrr_pin.derivation.symbols import Role, Terms
-from rttrr_pin.exact.intervals import BALL, ball, precision
+from rttrr_pin.exact.intervals import INTERVAL, precision
+from rttrr_pin.exact.intervals import interval as ball
 from rttrr_pin.implementations import make_oracle
 
 BITS = 256
@@ -142,7 +143,7 @@ class Witness:
             bodies = [self._body(body) for body in robot.bodies()]
             payloads = [Payload(x.link, self._vector(x.f), self._vector(x.n)) for x in robot.payloads]
             q, v, a = ([ball(float(x)) for x in numbers] for numbers in (self.q, self.v, self.a))
-            return dynamics(robot.model, BALL, q, v, a, payloads, links=bodies, gravity=self._vector(robot.gravity))
+            return dynamics(robot.model, INTERVAL, q, v, a, payloads, links=bodies, gravity=self._vector(robot.gravity))
 
     def _ball(self, x: Scalar) -> arb:
         return arb(evaluate(self.robot.ring.terms(x), self._ball_values, ball))

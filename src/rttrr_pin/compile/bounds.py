@@ -11,8 +11,8 @@ least |x| and at least |x_true|:
 
 Terms of first order are exact; of second order one is counted twice. Inputs are the doubles themselves, without error,
 but for quaternions: what is meant by s is s / |s|, which differs by | |s| - 1 | <= | |s|^2 - 1 | of each component.
-Numbers of the robot bring their errors (`Known`). Changes of sign, and products with powers of two among the robot's
-numbers, are exact.
+Numbers of the robot bring their errors (`ConstantWithError`). Changes of sign, and products with powers of two among
+the robot's numbers, are exact.
 
 The bounds are rounded too: that changes a bound by at most some u for each operation on its way, and is covered by one
 factor (`SLACK`). Underflow is not covered; it needs numbers below 1e-290.
@@ -35,7 +35,7 @@ def with_bounds(
     """The program with bounds among its outputs.
 
     Args:
-        program: whose numbers of the robot are `Known`.
+        program: whose numbers of the robot are `ConstantWithError`.
         outputs: names of the program's outputs, and of such with `BOUND` behind.
         quaternions: the place of the first component of each among the inputs.
         fused: whether products may be fused with sums.

@@ -7,15 +7,15 @@ from dataclasses import replace
 from itertools import accumulate
 
 from rttrr_pin.compile.bounds import with_bounds
-from rttrr_pin.compile.call_program import Schedule
+from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.expression import Graph, GraphFullError
-from rttrr_pin.compile.outlining import Recorder
+from rttrr_pin.compile.outlining import Outliner
 from rttrr_pin.compile.program import Program
 from rttrr_pin.compile.quantities import BOUND, QUANTITIES
 from rttrr_pin.compile.register_allocation import arranged
 from rttrr_pin.compile.simplify import simplify
-from rttrr_pin.compile.summation import in_chains
-from rttrr_pin.compile.trace import KNOWING, TRACING, PayloadSlot, fields, outputs_of, record, trace
+from rttrr_pin.compile.summation import order_sums
+from rttrr_pin.compile.trace import TRACING, TRACING_WITH_ERRORS, PayloadSlot, fields, outputs_of, record, trace
 from rttrr_pin.core.joint import JointType
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import Arithmetic
@@ -41,7 +41,7 @@ def build(
     payloads: Sequence[PayloadSlot] = (),
     straight_line: int | None = STRAIGHT_LINE,
     fused: bool = False,
-) -> Program | Schedule:
+) -> Program | CallProgram:
     """The program of a robot, of the kind that suits its size.
 
     Args:
@@ -60,20 +60,20 @@ def build(
     if any(name.endswith(BOUND) for name in outputs):
         return _bounded(model, outputs, payloads, fused)
     if straight_line is None or not all(QUANTITIES[name].by_steps for name in outputs):
-        return in_chains(simplify(_whole(model, outputs, payloads)), fused)
+        return order_sums(simplify(_whole(model, outputs, payloads)), fused)
     try:
         program = trace(model, outputs, payloads, most=straight_line * NODES)
     except GraphFullError:
-        return schedule(model, outputs, payloads, fused=fused)
+        return call_program(model, outputs, payloads, fused=fused)
     short = program.operations.total <= straight_line
-    return in_chains(simplify(program), fused) if short else schedule(model, outputs, payloads, fused=fused)
+    return order_sums(simplify(program), fused) if short else call_program(model, outputs, payloads, fused=fused)
 
 
 def _bounded(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot], fused: bool) -> Program:
     """Values and bounds on their rounding."""
     plain = tuple(dict.fromkeys(name.removesuffix(BOUND) for name in outputs))
-    program = simplify(_whole(model, plain, payloads, KNOWING, WITH_BOUNDS))
-    chained = in_chains(program, fused)
+    program = simplify(_whole(model, plain, payloads, TRACING_WITH_ERRORS, WITH_BOUNDS))
+    chained = order_sums(program, fused)
     return with_bounds(chained, outputs_of(model, outputs), _quaternions(model, program), fused)
 
 
@@ -104,27 +104,27 @@ def _whole(
         ) from None
 
 
-def schedule(
+def call_program(
     model: Model,
     outputs: Sequence[str],
     payloads: Sequence[PayloadSlot] = (),
-    lumped: bool = True,
+    regrouped: bool = True,
     fused: bool = False,
-) -> Schedule:
+) -> CallProgram:
     """A robot as calls, however large or small it is.
 
     Args:
         model: the robot.
         outputs: names from `QUANTITIES`, of quantities with `by_steps`.
         payloads: where payloads act.
-        lumped: whether inertia may be moved between links where that leaves the outputs as they are.
+        regrouped: whether inertia may be moved between links where that leaves the outputs as they are.
         fused: whether products may be fused with sums.
 
     Returns:
         Calls of steps, each step simplified, with sums in chains.
     """
-    recorder = Recorder(Graph())
-    arithmetic = replace(TRACING, call=recorder.call)
-    results = record(recorder.graph, arithmetic, model, outputs, payloads, lumped)
-    made = arranged(recorder, results, fields(model, outputs, payloads), outputs_of(model, outputs))
-    return replace(made, steps=tuple(replace(step, program=in_chains(step.program, fused)) for step in made.steps))
+    outliner = Outliner(Graph())
+    arithmetic = replace(TRACING, call=outliner.call)
+    results = record(outliner.graph, arithmetic, model, outputs, payloads, regrouped)
+    made = arranged(outliner, results, fields(model, outputs, payloads), outputs_of(model, outputs))
+    return replace(made, steps=tuple(replace(step, program=order_sums(step.program, fused)) for step in made.steps))

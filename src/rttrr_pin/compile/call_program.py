@@ -57,7 +57,7 @@ class Call:
 
 
 @dataclass(frozen=True, eq=False)
-class Schedule(Widths):
+class CallProgram(Widths):
     """A robot's program as calls.
 
     Attributes:

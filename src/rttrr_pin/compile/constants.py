@@ -14,7 +14,7 @@ Origin = tuple[bytes, bool]
 _fresh = count()
 
 
-class Known(float):
+class ConstantWithError(float):
     """A float whose true value is known to lie within `error` of it; sums and products carry the bound along.
 
     It is a float everywhere else: what is traced on such numbers is traced as on floats. With |x - x_true| <= e_x and
@@ -35,21 +35,21 @@ class Known(float):
     error: float
     origin: Origin
 
-    def __new__(cls, value: float, error: float = 0.0, origin: Origin | None = None) -> Known:
+    def __new__(cls, value: float, error: float = 0.0, origin: Origin | None = None) -> ConstantWithError:
         """The float, with its bound; a number of its own unless an origin is given."""
         number = super().__new__(cls, value)
         number.error = error
         number.origin = origin or (b"number %d" % next(_fresh), False)
         return number
 
-    def __add__(self, other: object) -> Known:
+    def __add__(self, other: object) -> ConstantWithError:
         if not isinstance(other, int | float):
             return NotImplemented
         if exactly(other, 0.0) or exactly(self, 0.0):
             return self if exactly(other, 0.0) else _known(other)
         (one, opposite), (another, turned) = _origin(self), _origin(other)
         if one == another and opposite != turned:
-            return Known(0.0)
+            return ConstantWithError(0.0)
         x, y = float(self), float(other)
         total = x + y
         part = total - x
@@ -57,32 +57,32 @@ class Known(float):
         terms = sorted([(one, opposite), (another, turned)])
         negative = terms[0][1]  # x - y and y - x are opposites
         origin = _combined("+", *((name, sign != negative) for name, sign in terms)), negative
-        return Known(total, self.error + error_of(other) + rounding, origin)
+        return ConstantWithError(total, self.error + error_of(other) + rounding, origin)
 
     __radd__ = __add__
 
-    def __neg__(self) -> Known:
-        return Known(-float(self), self.error, (self.origin[0], not self.origin[1]))
+    def __neg__(self) -> ConstantWithError:
+        return ConstantWithError(-float(self), self.error, (self.origin[0], not self.origin[1]))
 
-    def __abs__(self) -> Known:
+    def __abs__(self) -> ConstantWithError:
         return -self if self < 0.0 else self
 
-    def __sub__(self, other: object) -> Known:
+    def __sub__(self, other: object) -> ConstantWithError:
         if not isinstance(other, int | float):
             return NotImplemented
         return self + (-other)
 
-    def __rsub__(self, other: object) -> Known:
+    def __rsub__(self, other: object) -> ConstantWithError:
         if not isinstance(other, int | float):
             return NotImplemented
         return (-self) + other
 
-    def __mul__(self, other: object) -> Known:
+    def __mul__(self, other: object) -> ConstantWithError:
         if not isinstance(other, int | float):
             return NotImplemented
         for factor, number in ((self, other), (other, self)):
             if exactly(factor, 0.0):
-                return Known(0.0)
+                return ConstantWithError(0.0)
             if exactly(abs(factor), 1.0):
                 return _known(number if factor > 0.0 else -number)
         x, y, error = float(self), float(other), error_of(other)
@@ -90,11 +90,11 @@ class Known(float):
         rounding = 0.0 if is_power_of_two(x) or is_power_of_two(y) else UNIT_ROUNDOFF * abs(product)
         (one, opposite), (another, turned) = sorted([_origin(self), _origin(other)])
         origin = _combined("*", (one, False), (another, False)), opposite != turned
-        return Known(product, abs(x) * error + abs(y) * self.error + self.error * error + rounding, origin)
+        return ConstantWithError(product, abs(x) * error + abs(y) * self.error + self.error * error + rounding, origin)
 
     __rmul__ = __mul__
 
-    def __truediv__(self, other: object) -> Known:
+    def __truediv__(self, other: object) -> ConstantWithError:
         if not isinstance(other, int | float):
             return NotImplemented
         x, y, error = float(self), float(other), error_of(other)
@@ -104,26 +104,26 @@ class Known(float):
         inherited = (self.error + abs(quotient) * error) / least if least > 0.0 else math.inf
         (one, opposite), (another, turned) = _origin(self), _origin(other)
         origin = _combined("/", (one, False), (another, False)), opposite != turned
-        return Known(quotient, inherited + rounding, origin)
+        return ConstantWithError(quotient, inherited + rounding, origin)
 
-    def __rtruediv__(self, other: object) -> Known:
+    def __rtruediv__(self, other: object) -> ConstantWithError:
         if not isinstance(other, int | float):
             return NotImplemented
-        return Known(other) / self
+        return ConstantWithError(other) / self
 
-    def function(self, name: str, value: float, error: float) -> Known:
+    def function(self, name: str, value: float, error: float) -> ConstantWithError:
         """What a function of this number is, within an error: equal arguments have equal values."""
-        return Known(value, error, (_combined(name, _origin(self)), False))
+        return ConstantWithError(value, error, (_combined(name, _origin(self)), False))
 
 
 def error_of(x: float) -> float:
     """The bound of a number; 0 for any plain one."""
-    return x.error if isinstance(x, Known) else 0.0
+    return x.error if isinstance(x, ConstantWithError) else 0.0
 
 
 def origin_of(x: float) -> Origin | None:
     """Which number it is, where its value does not say."""
-    return x.origin if isinstance(x, Known) and x.error else None
+    return x.origin if isinstance(x, ConstantWithError) and x.error else None
 
 
 def exactly(x: float, value: float) -> bool:
@@ -136,8 +136,8 @@ def is_power_of_two(x: float) -> bool:
     return math.frexp(abs(x))[0] == 0.5
 
 
-def _known(x: float) -> Known:
-    return x if isinstance(x, Known) else Known(x)
+def _known(x: float) -> ConstantWithError:
+    return x if isinstance(x, ConstantWithError) else ConstantWithError(x)
 
 
 def _origin(x: float) -> Origin:

@@ -17,7 +17,7 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from typing import TypeAlias
 
-from rttrr_pin.compile.constants import Known, exactly, origin_of
+from rttrr_pin.compile.constants import ConstantWithError, exactly, origin_of
 from rttrr_pin.core.scalars import SINE_ULPS, UNIT_ROUNDOFF
 
 Number: TypeAlias = int | float
@@ -87,7 +87,7 @@ class Graph:
     def constant(self, value: Number) -> int:
         """A number of the robot; +0 and -0 are one, since no sum or product of the recursion tells them apart.
 
-        Numbers with a bound on their error (`Known`) share a node only where they are the same number.
+        Numbers with a bound on their error (`ConstantWithError`) share a node only where they are the same number.
         """
         key = (Op.CONSTANT, float(value) + 0.0, origin_of(value))
         number = self._known.get(key)
@@ -96,7 +96,9 @@ class Graph:
             self.op.append(Op.CONSTANT)
             self.args.append(())
             exact = float(value) + 0.0
-            self.value[number] = Known(exact, value.error, value.origin) if isinstance(value, Known) else exact
+            self.value[number] = (
+                ConstantWithError(exact, value.error, value.origin) if isinstance(value, ConstantWithError) else exact
+            )
         return number
 
     def input(self, place: int) -> int:
@@ -215,7 +217,7 @@ FUNCTIONS: dict[Op, Callable[[float], float]] = {
 def _of_number(op: Op, x: float) -> float:
     """A function of a number; the sine and cosine of one that knows its error know theirs, but for sin 0 and cos 0."""
     value = FUNCTIONS[op](x)
-    if op in (Op.SIN, Op.COS) and isinstance(x, Known) and not exactly(x, 0.0):
+    if op in (Op.SIN, Op.COS) and isinstance(x, ConstantWithError) and not exactly(x, 0.0):
         return x.function(op.name, value, x.error + 2 * SINE_ULPS * UNIT_ROUNDOFF * abs(value))
     return value
 

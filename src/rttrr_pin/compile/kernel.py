@@ -291,10 +291,10 @@ def fingerprint(model: Model) -> bytes:
     """Every number of a robot that a program can depend on."""
     parts: list[object] = [model.gravity.tobytes()]
     for link, joint in zip(model.links, model.joints, strict=True):
-        drive, mimic = joint.drive, joint.mimic
+        effects, mimic = joint.effects, joint.mimic
         parts += [link.mass, link.com.tobytes(), link.inertia.tobytes(), joint.type.value, joint.parent]
         parts += [joint.R.tobytes(), joint.p.tobytes(), joint.axis.tobytes()]
-        parts += [drive.armature, drive.damping, drive.friction]
+        parts += [effects.armature, effects.damping, effects.friction]
         parts += [mimic and (mimic.joint, mimic.multiplier, mimic.offset)]
     return repr(parts).encode()
 

@@ -63,7 +63,7 @@ class Recorded:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Taken:
+class CallSite:
     """A step, taken.
 
     Attributes:
@@ -82,7 +82,7 @@ class Taken:
 
 
 @dataclass(eq=False)
-class Recorder:
+class Outliner:
     """Takes steps, and records what is done between them.
 
     Attributes:
@@ -95,7 +95,7 @@ class Recorder:
     graph: Graph
     steps: dict[Hashable, Recorded] = field(default_factory=dict)
     made: dict[Hashable, Any] = field(default_factory=dict)
-    origin: dict[int, tuple[Taken, int]] = field(default_factory=dict)
+    origin: dict[int, tuple[CallSite, int]] = field(default_factory=dict)
     _fresh: Iterator[int] = field(default_factory=lambda: count(-1, -1))
 
     def call(self, function: Callable[..., Any], *given: Any) -> Any:
@@ -121,7 +121,7 @@ class Recorder:
 
     def _taken(self, recorded: Recorded, leaves: Sequence[Leaf]) -> Any:
         """The answer for these scalars."""
-        taken = Taken(recorded, leaves, tuple(self.graph.input(next(self._fresh)) for _ in recorded.outputs))
+        taken = CallSite(recorded, leaves, tuple(self.graph.input(next(self._fresh)) for _ in recorded.outputs))
         self.origin |= {x: (taken, k) for k, x in enumerate(taken.results)}
         outside: dict[int, Leaf] = {
             x: Node(self.graph, y) for x, y in zip(recorded.outputs, taken.results, strict=True)
@@ -131,9 +131,9 @@ class Recorder:
             recorded.answer, iter([leaves[args[x][0]] if op[x] is Op.INPUT else outside[x] for x in recorded.nodes])
         )
 
-    def needed(self, results: Sequence[int]) -> list[Taken]:
+    def needed(self, results: Sequence[int]) -> list[CallSite]:
         """The steps that the results need, in order; operations between them have become steps too."""
-        steps: dict[int, Taken] = {}
+        steps: dict[int, CallSite] = {}
         needed = set(results)
         for x in reversed(range(len(self.graph))):
             if x not in needed:
@@ -151,10 +151,10 @@ class Recorder:
                 )
         return [steps[first] for first in sorted(steps)]
 
-    def _single(self, x: int) -> Taken:
+    def _single(self, x: int) -> CallSite:
         """An operation as a step of its own."""
         structure, leaves = arguments(tuple(Node(self.graph, y) for y in self.graph.args[x]), self.graph)
-        return Taken(self._recorded(SINGLE[self.graph.op[x]], structure, leaves), leaves, (x,))
+        return CallSite(self._recorded(SINGLE[self.graph.op[x]], structure, leaves), leaves, (x,))
 
 
 SINGLE: dict[Op, Callable[..., Any]] = {

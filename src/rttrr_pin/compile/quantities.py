@@ -112,7 +112,7 @@ def _regressor(motion: Motion) -> list[Scalar]:
     At a point mass of 1 kg in the origin of {i} the derivatives by mass, r_C and tensor about the centre of mass are
     those by mass, first moment and tensor about the origin; as tau is linear in them, they hold everywhere.
     """
-    still = motion.model.without_drives()
+    still = motion.model.without_joint_effects()
     links = [_with_parameters(body, 10 * i) for i, body in enumerate(bodies(still, motion.arithmetic))]
     tau = dynamics(still, motion.arithmetic, motion.q, motion.v, motion.a, links=links).tau
     return [part_of(row, k) for row in tau for k in range(10 * len(links))]

@@ -5,19 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 
-from rttrr_pin.compile.call_program import Call, Schedule, Step
+from rttrr_pin.compile.call_program import Call, CallProgram, Step
 from rttrr_pin.compile.expression import Graph, Node
-from rttrr_pin.compile.outlining import Recorder, Taken
+from rttrr_pin.compile.outlining import CallSite, Outliner
 from rttrr_pin.compile.program import Field, Program
 
 
 def arranged(
-    recorder: Recorder, results: Sequence[int], inputs: tuple[Field, ...], outputs: tuple[Field, ...]
-) -> Schedule:
+    outliner: Outliner, results: Sequence[int], inputs: tuple[Field, ...], outputs: tuple[Field, ...]
+) -> CallProgram:
     """The schedule of what was recorded.
 
     Args:
-        recorder: has seen the robot.
+        outliner: has seen the robot.
         results: nodes of its graph, for each number of the outputs.
         inputs: the arrays that are read.
         outputs: the arrays that are written.
@@ -25,35 +25,35 @@ def arranged(
     Returns:
         Calls in the order in which the specification took the steps.
     """
-    taken = recorder.needed(results)
+    taken = outliner.needed(results)
     steps = list(dict.fromkeys((*STANDING, *(one.recorded.step for one in taken))))
     index = {step: k for k, step in enumerate(steps)}
     width = sum(field.width for field in inputs)
-    columns = _Columns(recorder.graph, width, results, _last_reads(taken))
+    columns = _Columns(outliner.graph, width, results, _last_reads(taken))
     calls = [columns.call(k, index[one.recorded.step], one) for k, one in enumerate(taken)]
     rest = [columns.rest(place, x) for place, x in enumerate(results)]
     seen = _seen(taken, results)
-    return Schedule(
+    return CallProgram(
         steps=tuple(steps),
         calls=(*calls, *(call for call in rest if call is not None)),
         inputs=inputs,
         outputs=outputs,
         between=columns.count - width - len(results),
-        unread=tuple(place for place in range(width) if recorder.graph.input(place) not in seen),
+        unread=tuple(place for place in range(width) if outliner.graph.input(place) not in seen),
     )
 
 
-def _read(one: Taken) -> list[int]:
+def _read(one: CallSite) -> list[int]:
     """The nodes in the columns that a step reads."""
     return [leaf.number for place in one.recorded.step.columns if isinstance(leaf := one.leaves[place], Node)]
 
 
-def _last_reads(taken: Sequence[Taken]) -> dict[int, int]:
+def _last_reads(taken: Sequence[CallSite]) -> dict[int, int]:
     """The last step that reads each node."""
     return {x: k for k, one in enumerate(taken) for x in _read(one)}
 
 
-def _seen(taken: Sequence[Taken], results: Sequence[int]) -> set[int]:
+def _seen(taken: Sequence[CallSite], results: Sequence[int]) -> set[int]:
     """Nodes that the results depend on."""
     seen = set(results)
     for one in reversed(taken):
@@ -91,7 +91,7 @@ class _Columns:
         self.of = {x: self.width + place for place, x in reversed(list(enumerate(self.results)))}
         self.of |= {self.graph.input(place): place for place in range(self.width)}
 
-    def call(self, k: int, step: int, one: Taken) -> Call:
+    def call(self, k: int, step: int, one: CallSite) -> Call:
         """The call, with columns for what it yields; they may be those of what it reads last."""
         read = _read(one)
         columns = tuple(self.of.get(x, 0) for x in read)  # 0 where only results that nobody needs depend on it

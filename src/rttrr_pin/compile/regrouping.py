@@ -9,7 +9,8 @@ Where only driving forces are asked for, single links do not matter, and three t
 - Along a prismatic joint the link turns as its carrier does: the whole tensor about its centre of mass may move.
 
 Inertias are added up as mass, first moment and tensor about a common origin, in the robot's own numbers: floats, or
-such that know their error (`Known`), so that moving inertia counts in the kernel's bounds like any other rounding.
+such that know their error (`ConstantWithError`), so that moving inertia counts in the kernel's bounds like any other
+rounding.
 """
 
 from __future__ import annotations
@@ -72,7 +73,7 @@ class Inertia:
         return replace(body, M=self.m, r_C=com, I=(tensor + tensor.T) * 0.5)
 
 
-def lump(model: Model, links: Sequence[Body]) -> tuple[Model, list[Body]]:
+def regroup(model: Model, links: Sequence[Body]) -> tuple[Model, list[Body]]:
     """The robot with the same driving forces at every motion, and fewer numbers that are not zero.
 
     Args:

@@ -21,7 +21,7 @@ SIGNS = {Op.ADD: (False, False), Op.SUB: (False, True), Op.NEG: (True,)}
 """Which operands are subtracted."""
 
 
-def in_chains(program: Program, fused: bool) -> Program:
+def order_sums(program: Program, fused: bool) -> Program:
     """The program with its sums of sums as chains.
 
     Args:

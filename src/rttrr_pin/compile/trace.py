@@ -6,11 +6,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-from rttrr_pin.compile.constants import Known
+from rttrr_pin.compile.constants import ConstantWithError
 from rttrr_pin.compile.expression import Graph, Node, Op
 from rttrr_pin.compile.program import Field, Program
 from rttrr_pin.compile.quantities import QUANTITIES, Motion
-from rttrr_pin.compile.regrouping import lump
+from rttrr_pin.compile.regrouping import regroup
 from rttrr_pin.core.algebra import Scalar, Vector
 from rttrr_pin.core.dynamics import bodies
 from rttrr_pin.core.joint_motion import Body
@@ -36,7 +36,7 @@ def trace(
     model: Model,
     outputs: Sequence[str],
     payloads: Sequence[PayloadSlot] = (),
-    lumped: bool = True,
+    regrouped: bool = True,
     most: int | None = None,
     arithmetic: Arithmetic | None = None,
 ) -> Program:
@@ -46,9 +46,9 @@ def trace(
         model: the robot.
         outputs: names from `QUANTITIES`.
         payloads: where payloads act.
-        lumped: whether inertia may be moved between links where that leaves the outputs as they are.
+        regrouped: whether inertia may be moved between links where that leaves the outputs as they are.
         most: nodes to record before giving up; None for any number.
-        arithmetic: `TRACING` or `KNOWING`; None for the former.
+        arithmetic: `TRACING` or `TRACING_WITH_ERRORS`; None for the former.
 
     Returns:
         The program as the specification's operations leave it; `simplify` shortens it.
@@ -57,7 +57,7 @@ def trace(
         GraphFullError: it takes more nodes.
     """
     graph = Graph(most=most)
-    results = record(graph, arithmetic or TRACING, model, outputs, payloads, lumped)
+    results = record(graph, arithmetic or TRACING, model, outputs, payloads, regrouped)
     return Program(graph, fields(model, outputs, payloads), outputs_of(model, outputs), results)
 
 
@@ -67,7 +67,7 @@ def record(
     model: Model,
     outputs: Sequence[str],
     payloads: Sequence[PayloadSlot],
-    lumped: bool = True,
+    regrouped: bool = True,
 ) -> tuple[int, ...]:
     """Run the specification on nodes of a graph, whose first inputs are the numbers of `fields`.
 
@@ -77,15 +77,15 @@ def record(
         model: the robot.
         outputs: names from `QUANTITIES`.
         payloads: where payloads act.
-        lumped: as in `trace`.
+        regrouped: as in `trace`.
 
     Returns:
         The nodes of the outputs' numbers.
     """
     wanted = [QUANTITIES[name] for name in outputs]
     links: Sequence[Body] | None = None
-    if lumped and not any(quantity.of_links for quantity in wanted):
-        model, links = lump(model, bodies(model, arithmetic))
+    if regrouped and not any(quantity.of_links for quantity in wanted):
+        model, links = regroup(model, bodies(model, arithmetic))
     inputs = fields(model, outputs, payloads)
     columns = (Node(graph, graph.input(place)) for place in range(sum(field.width for field in inputs)))
     given = {field.name: [next(columns) for _ in range(field.width)] for field in inputs}
@@ -147,5 +147,5 @@ def _sign(x: Scalar) -> Scalar:
 TRACING = Arithmetic(number=_value, column=lambda x: x, sincos=_sincos, sign=_sign, keep=_keep)
 """The arithmetic that records; numbers of the model stay floats and fold among themselves."""
 
-KNOWING = replace(TRACING, number=Known)
+TRACING_WITH_ERRORS = replace(TRACING, number=ConstantWithError)
 """The same; numbers of the model carry a bound on their error, and so do those that they fold into."""

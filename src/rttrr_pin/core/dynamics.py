@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rttrr_pin.core.algebra import Matrix, Scalar, Vector
-from rttrr_pin.core.joint import Drive, Joint, Mimic
+from rttrr_pin.core.joint import Joint, JointEffects, Mimic
 from rttrr_pin.core.joint_motion import Body, JointState
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.newton_euler import Payload, newton_euler
@@ -102,7 +102,10 @@ def dynamics(
     parents = [joint.parent for joint in model.joints]
     sincos, keep, call = arithmetic.sincos, arithmetic.keep, arithmetic.call
     result = newton_euler(links or bodies(model, arithmetic), parents, states, gravity, payloads, sincos, keep, call)
-    own = [call(_drive, joint.drive, state, arithmetic) for joint, state in zip(model.joints, states, strict=True)]
+    own = [
+        call(_joint_effects, joint.effects, state, arithmetic)
+        for joint, state in zip(model.joints, states, strict=True)
+    ]
     across, tau_joint = (_generalised(model, arithmetic, forces) for forces in (result.tau, own))
     tau = [x + y for x, y in zip(across, tau_joint, strict=True)]
     return Result(tau, tau_joint, result.F, result.N, result.f, result.n)
@@ -132,17 +135,17 @@ def _following(mimic: Mimic, master: JointState, arithmetic: Arithmetic) -> Join
     return JointState([q * multiplier + offset], [v * multiplier], [a * multiplier])
 
 
-def _drive(drive: Drive, state: JointState, arithmetic: Arithmetic) -> list[Scalar]:
+def _joint_effects(effects: JointEffects, state: JointState, arithmetic: Arithmetic) -> list[Scalar]:
     """Armature a + damping v + friction sign(v) for each degree of freedom; 0 where the joint has none of them."""
     parts = []
     for v, a in zip(state.v, state.a, strict=True):
         force: Scalar = 0
-        if drive.armature:
-            force = a * arithmetic.number(drive.armature, 0.0) + force
-        if drive.damping:
-            force = v * arithmetic.number(drive.damping, 0.0) + force
-        if drive.friction:
-            force = arithmetic.sign(v) * arithmetic.number(drive.friction, 0.0) + force
+        if effects.armature:
+            force = a * arithmetic.number(effects.armature, 0.0) + force
+        if effects.damping:
+            force = v * arithmetic.number(effects.damping, 0.0) + force
+        if effects.friction:
+            force = arithmetic.sign(v) * arithmetic.number(effects.friction, 0.0) + force
         parts.append(force)
     return parts
 

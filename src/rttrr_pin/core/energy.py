@@ -158,8 +158,8 @@ def drive_power(
     """
     total: Scalar = 0
     for joint, state, moved in zip(model.joints, states, rates, strict=True):
-        drive = joint.drive
-        coefficients = (drive.armature, drive.damping, drive.friction)
+        effects = joint.effects
+        coefficients = (effects.armature, effects.damping, effects.friction)
         for v, a, rate in zip(state.v, state.a, moved.v, strict=True):
             for coefficient, factor in zip(coefficients, (a, v, arithmetic.sign(v)), strict=True):
                 if coefficient:

@@ -95,7 +95,7 @@ class Mimic:
 
 
 @dataclass(frozen=True, slots=True)
-class Drive:
+class JointEffects:
     """What a joint itself adds to its driving force; the bearing does not see it.
 
         tau_joint = armature a + damping v + friction sign(v)
@@ -126,7 +126,7 @@ class Joint:
         rotated: whether `R` was computed from a non-zero rpy (else it is exactly the identity).
         mimic: the joint that it follows, if any.
         dynamics: damping and friction as the file gives them, whether they take part or not.
-        drive: what the joint itself adds to its driving force.
+        effects: what the joint itself adds to its driving force.
     """
 
     name: str
@@ -138,8 +138,8 @@ class Joint:
     limits: Limits = Limits()
     rotated: bool = False
     mimic: Mimic | None = None
-    dynamics: Drive = Drive()
-    drive: Drive = Drive()
+    dynamics: JointEffects = JointEffects()
+    effects: JointEffects = JointEffects()
 
     def __post_init__(self) -> None:
         for name, shape in (("R", (3, 3)), ("p", (3,)), ("axis", (3,))):

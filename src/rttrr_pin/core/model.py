@@ -13,7 +13,7 @@ from functools import cached_property
 
 import numpy as np
 
-from rttrr_pin.core.joint import Array, Drive, Joint, JointType, frozen
+from rttrr_pin.core.joint import Array, Joint, JointEffects, JointType, frozen
 from rttrr_pin.errors import InputError, UnknownNameError
 
 STANDARD_GRAVITY = (0.0, 0.0, -9.81)
@@ -179,9 +179,9 @@ class Model:
         world = Link(UNIVERSE)
         return replace(self, root=world, links=(self.root, *self.links), joints=(base, *moved), floating=True)
 
-    def without_drives(self) -> Model:
+    def without_joint_effects(self) -> Model:
         """The same robot, whose joints take no torque themselves."""
-        return replace(self, joints=tuple(replace(joint, drive=Drive()) for joint in self.joints))
+        return replace(self, joints=tuple(replace(joint, effects=JointEffects()) for joint in self.joints))
 
     def with_gravity(self, gravity: Array) -> Model:
         """The same robot in another gravity field."""

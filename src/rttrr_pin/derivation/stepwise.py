@@ -18,7 +18,7 @@ from flint import fmpq
 from rttrr_pin.core.algebra import ZERO, Scalar, Vector
 from rttrr_pin.core.dual import Dual, value_of
 from rttrr_pin.core.dynamics import Result, dynamics
-from rttrr_pin.core.joint import Drive
+from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.newton_euler import Payload
 from rttrr_pin.derivation.chain import AXES, SymbolicRobot
@@ -112,7 +112,7 @@ class Stepwise:
 
     def gravity(self) -> list[Terms]:
         """What holds the robot still."""
-        model = self.robot.model.without_drives()
+        model = self.robot.model.without_joint_effects()
         nothing = [0] * model.nv
         run = Run(model, nothing, nothing, self.robot.gravity, suffix="_g", latex=",g")
         return [self.terms(x, run) for x in self._result(run).tau]
@@ -129,7 +129,7 @@ class Stepwise:
 
     def coriolis(self) -> list[list[Terms]]:
         """C(q, v), by its columns 1/2 d tau / d v_j."""
-        model, half = self.robot.model.without_drives(), fmpq(1, 2)
+        model, half = self.robot.model.without_joint_effects(), fmpq(1, 2)
         columns = []
         for j, symbol in enumerate(self._motion(Role.RATE)):
             v = [Dual(x, {0: 1}) if i == j else x for i, x in enumerate(self.robot.v)]
@@ -238,5 +238,5 @@ def _part(x: Scalar) -> Scalar:
 
 def _with_armature_alone(model: Model) -> Model:
     """The robot whose joints take torque by their armature only."""
-    joints = [replace(joint, drive=Drive(armature=joint.drive.armature)) for joint in model.joints]
+    joints = [replace(joint, effects=JointEffects(armature=joint.effects.armature)) for joint in model.joints]
     return replace(model, joints=tuple(joints))

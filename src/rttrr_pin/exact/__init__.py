@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from rttrr_pin.exact.adjudication import Off, Settlement, Side, eps_in_words, verdict_of
-from rttrr_pin.exact.enclosures import Certificate, Enclosure, certify
+from rttrr_pin.exact.adjudication import Adjudication, Assessment, Deviation, format_eps, verdict_of
+from rttrr_pin.exact.enclosures import Enclosure, Enclosures, enclose
 from rttrr_pin.exact.rounding import BOUNDED, Bounded, bounded_dynamics
 
 __all__ = [
     "BOUNDED",
+    "Adjudication",
+    "Assessment",
     "Bounded",
-    "Certificate",
+    "Deviation",
     "Enclosure",
-    "Off",
-    "Settlement",
-    "Side",
+    "Enclosures",
     "bounded_dynamics",
-    "certify",
-    "eps_in_words",
+    "enclose",
+    "format_eps",
     "verdict_of",
 ]

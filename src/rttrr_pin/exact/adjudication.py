@@ -14,13 +14,13 @@ from numpy.typing import NDArray
 
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.wrench import LINK_QUANTITIES, LinkWrenches
-from rttrr_pin.exact.enclosures import Certificate
+from rttrr_pin.exact.enclosures import Enclosures
 
 Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class Off:
+class Deviation:
     """How far one program is off the true value of one quantity at one place.
 
     Attributes:
@@ -48,7 +48,7 @@ class Off:
 
 
 @dataclass(frozen=True, slots=True)
-class Side:
+class Assessment:
     """One program in one state.
 
     Attributes:
@@ -57,27 +57,27 @@ class Side:
     """
 
     name: str
-    offs: tuple[Off, ...]
+    deviations: tuple[Deviation, ...]
 
     @property
-    def first(self) -> Off | None:
+    def first(self) -> Deviation | None:
         """Where it is wrong first; None where it is right."""
-        return next((off for off in self.offs if off.wrong), None)
+        return next((off for off in self.deviations if off.wrong), None)
 
     @property
-    def farthest(self) -> Off:
+    def farthest(self) -> Deviation:
         """Where it is off by most eps; the first of equals."""
-        return max(self.offs, key=lambda off: off.eps)
+        return max(self.deviations, key=lambda off: off.eps)
 
     @property
     def error(self) -> str:
         """How far off it is, in words: where it is wrong first, or by most if it is right."""
         told = self.first or self.farthest
-        return f"{eps_in_words(told.eps)}, first in {told.place}" if self.first else eps_in_words(told.eps)
+        return f"{format_eps(told.eps)}, first in {told.place}" if self.first else format_eps(told.eps)
 
 
 @dataclass(frozen=True, slots=True)
-class Settlement:
+class Adjudication:
     """Who is right in one state.
 
     Attributes:
@@ -89,8 +89,8 @@ class Settlement:
 
     state: int
     bits: int
-    ours: Side
-    theirs: Side
+    ours: Assessment
+    theirs: Assessment
 
     @property
     def right(self) -> tuple[bool, bool]:
@@ -111,12 +111,12 @@ class Settlement:
         return f"{right.name} is right to {right.error}; {wrong.name} is off by {wrong.error}"
 
 
-def verdict_of(settled: Sequence[Settlement]) -> str:
+def verdict_of(adjudicated: Sequence[Adjudication]) -> str:
     """Who is right in one state that was settled against several oracles, and where the others are wrong first."""
-    if len(settled) == 1:
-        return settled[0].verdict
-    ours = max((one.ours for one in settled), key=lambda side: (side.first is not None, len(side.offs)))
-    sides = [ours, *(one.theirs for one in settled)]
+    if len(adjudicated) == 1:
+        return adjudicated[0].verdict
+    ours = max((one.ours for one in adjudicated), key=lambda side: (side.first is not None, len(side.deviations)))
+    sides = [ours, *(one.theirs for one in adjudicated)]
     right, wrong = ([side for side in sides if (side.first is None) == wanted] for wanted in (True, False))
     off = "; ".join(f"{side.name} is off by {side.error}" for side in wrong)
     if not right:
@@ -129,18 +129,18 @@ def verdict_of(settled: Sequence[Settlement]) -> str:
     return f"{names} right to rounding; {off}"
 
 
-def eps_in_words(eps: float) -> str:
+def format_eps(eps: float) -> str:
     """A number of eps, short."""
     return f"{eps:.1f} eps" if eps < 1e4 else f"{eps:.1e} eps"
 
 
-def nearest(certificate: Certificate, computed: LinkWrenches) -> LinkWrenches:
+def nearest(enclosures: Enclosures, computed: LinkWrenches) -> LinkWrenches:
     """Of each enclosure the value that is nearest to a computed one; its middle where there is none."""
     parts = {}
-    for key, enclosure in certificate.items():
+    for key, enclosure in enclosures.items():
         x = enclosure.mid if key in LINK_QUANTITIES and not computed.links else getattr(computed, key)
         parts[key] = np.where(np.isnan(x), enclosure.mid, np.clip(x, enclosure.lower, enclosure.upper))
-    return LinkWrenches.of(parts | {"tau_joint": computed.tau_joint}, certificate.links, computed.joints)
+    return LinkWrenches.of(parts | {"tau_joint": computed.tau_joint}, enclosures.links, computed.joints)
 
 
 def walk(model: Model) -> Iterator[tuple[str, int]]:
@@ -160,8 +160,8 @@ def walk(model: Model) -> Iterator[tuple[str, int]]:
         yield from (("f", i), ("n", i), *(("tau", k) for k in completed[i]))
 
 
-def in_order(model: Model, offs: Sequence[Off]) -> tuple[Off, ...]:
+def in_order(model: Model, deviations: Sequence[Deviation]) -> tuple[Deviation, ...]:
     """From the order of reports (tau, then F, N, f, n, each link by link, or tau alone) to that of the walk."""
     links = len(model.links)
     first = {"tau": 0} | {key: model.nv + k * links for k, key in enumerate(LINK_QUANTITIES)}
-    return tuple(offs[at] for quantity, place in walk(model) if (at := first[quantity] + place) < len(offs))
+    return tuple(deviations[at] for quantity, place in walk(model) if (at := first[quantity] + place) < len(deviations))

@@ -17,8 +17,8 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import LINK_QUANTITIES, QUANTITIES, LinkWrenches
 from rttrr_pin.errors import InputError
-from rttrr_pin.exact.intervals import BALL, ball, precision
-from rttrr_pin.exact.parameters import Numbers, written
+from rttrr_pin.exact.intervals import INTERVAL, interval, precision
+from rttrr_pin.exact.parameters import Numbers, exact_parameters
 from rttrr_pin.exact.recursion import Slots, results_of
 
 Array = NDArray[np.float64]
@@ -57,7 +57,7 @@ class Enclosure:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Certificate:
+class Enclosures:
     """What the five quantities truly are, to the last bit of a double; shapes, frames and units as in `LinkWrenches`.
 
     Attributes:
@@ -67,7 +67,7 @@ class Certificate:
         f: force from the parent, (..., links, 3) [N].
         n: moment from the parent about the origin of {i}, (..., links, 3) [N m].
         bits: precision that it took, (...).
-        tight: whether every enclosure is as narrow as it can be, (...); see `certify`.
+        tight: whether every enclosure is as narrow as it can be, (...); see `enclose`.
         links: the names along the links axis.
         joints: the names along the last axis of tau.
     """
@@ -86,17 +86,15 @@ class Certificate:
         """The five quantities with their names, in the order of reports."""
         return ((key, getattr(self, key)) for key in QUANTITIES)
 
-    def __getitem__(self, index: int | slice) -> Certificate:
+    def __getitem__(self, index: int | slice) -> Enclosures:
         """The same for one state or some states of a batch."""
         parts = {key: value[index] for key, value in self.items()}
-        return Certificate(
-            **parts, bits=self.bits[index], tight=self.tight[index], links=self.links, joints=self.joints
-        )
+        return Enclosures(**parts, bits=self.bits[index], tight=self.tight[index], links=self.links, joints=self.joints)
 
 
-def certify(
+def enclose(
     model: Model, q: Array, v: Array, a: Array, loads: Sequence[Load] = (), numbers: Numbers = "doubles"
-) -> Certificate:
+) -> Enclosures:
     """The specification on balls, to a precision that rises until every enclosure is tight.
 
     Tight is a number whose enclosure is one double, or two neighbours (or, where balls cannot tell the true value from
@@ -139,7 +137,7 @@ def certify(
         key: Enclosure(*(_shaped(model, side)[key].reshape(*batch, *_shape(model, key)) for side in (lower, upper)))
         for key in QUANTITIES
     }
-    return Certificate(
+    return Enclosures(
         **parts,
         bits=bits.reshape(batch),
         tight=tight.reshape(batch),
@@ -163,7 +161,9 @@ def _enclosed(
         with precision(some):
             run = ready()
             for row in waiting:
-                ends = np.array([enclose(x) for x in run(states[row].tolist())], dtype=np.float64).reshape(-1, 2)
+                ends = np.array([enclosing_doubles(x) for x in run(states[row].tolist())], dtype=np.float64).reshape(
+                    -1, 2
+                )
                 lower[row], upper[row] = ends[places, 0], ends[places, 1]
         bits[waiting] = some
         tight[waiting] = _tight(model, lower[waiting], upper[waiting])
@@ -177,22 +177,22 @@ Run = Callable[[Sequence[float]], list[arb]]
 def _recursion(model: Model, slots: Slots, numbers: Numbers, rows: int) -> tuple[Callable[[], Run], NDArray[np.intp]]:
     """What makes, at the precision in force, a function from a state's numbers to balls, and the places of these."""
     if rows >= STRAIGHT_FROM:
-        from rttrr_pin.exact.straight_line import straight  # loads the kernel
+        from rttrr_pin.exact.straight_line import straight_line  # loads the kernel
 
-        program = straight(model, slots, numbers)
+        program = straight_line(model, slots, numbers)
         return program.ready, program.places
 
     def ready() -> Run:
-        exact, links = model, bodies(model, BALL)
+        exact, links = model, bodies(model, INTERVAL)
         if numbers != "doubles":
-            of_file = written(model, numbers)
-            exact, links = of_file.model, of_file.bodies(BALL, lambda square: ball(square).rsqrt())
-        return lambda state: [arb(x) for x in results_of(exact, BALL, [arb(x) for x in state], slots, links)]
+            of_file = exact_parameters(model, numbers)
+            exact, links = of_file.model, of_file.bodies(INTERVAL, lambda square: interval(square).rsqrt())
+        return lambda state: [arb(x) for x in results_of(exact, INTERVAL, [arb(x) for x in state], slots, links)]
 
     return ready, np.arange(model.nv + 12 * len(model.links))
 
 
-def enclose(x: arb) -> tuple[float, float]:
+def enclosing_doubles(x: arb) -> tuple[float, float]:
     """The nearest doubles that a ball lies between: one, two neighbours, or as far apart as the ball is wide."""
     middle = float(x)
     if not math.isfinite(middle):

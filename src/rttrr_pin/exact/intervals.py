@@ -26,7 +26,7 @@ def precision(bits: int) -> Iterator[None]:
         ctx.prec = before
 
 
-def ball(value: float | Fraction) -> arb:
+def interval(value: float | Fraction) -> arb:
     """The ball of a float or a fraction: exact, or rounded outwards to the precision in force."""
     if isinstance(value, Fraction):
         return arb(fmpq(value.numerator, value.denominator))
@@ -42,5 +42,7 @@ def _sign(x: Scalar) -> arb:
     return arb(x).sgn()
 
 
-BALL = Arithmetic(number=lambda value, error: ball(value), column=lambda x: ball(float(x)), sincos=_sincos, sign=_sign)
+INTERVAL = Arithmetic(
+    number=lambda value, error: interval(value), column=lambda x: interval(float(x)), sincos=_sincos, sign=_sign
+)
 """Balls as a kind of scalar: the model's numbers are the doubles that it holds."""

@@ -16,7 +16,7 @@ from typing import Any, Literal
 import numpy as np
 
 from rttrr_pin.core.algebra import Matrix, Scalar, Vector
-from rttrr_pin.core.joint import AXIAL, Drive, Joint, JointType, Mimic
+from rttrr_pin.core.joint import AXIAL, Joint, JointEffects, JointType, Mimic
 from rttrr_pin.core.joint_motion import Body, rotation
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import Arithmetic
@@ -66,7 +66,7 @@ WELD = WrittenJoint(NOTHING, NOTHING, NOTHING, "", Fraction(1), Fraction(0), Fra
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Written:
+class ExactParameters:
     """A model and its numbers in rationals.
 
     Attributes:
@@ -91,7 +91,7 @@ class Written:
 
 
 @lru_cache(maxsize=16)
-def written(model: Model, numbers: Literal["read", "text"]) -> Written:
+def exact_parameters(model: Model, numbers: Literal["read", "text"]) -> ExactParameters:
     """The numbers of the file that a model was read from.
 
     Args:
@@ -117,7 +117,7 @@ def written(model: Model, numbers: Literal["read", "text"]) -> Written:
             "read; pass numbers='doubles'"
         )
     exact = tuple(_exact(joint, as_written, own) for joint, as_written in zip(model.joints, joints, strict=True))
-    return Written(replace(model, joints=exact), links, joints)
+    return ExactParameters(replace(model, joints=exact), links, joints)
 
 
 def _reader(numbers: str) -> Callable[[str], Fraction]:
@@ -174,13 +174,13 @@ def _exact(joint: Joint, as_written: WrittenJoint, own: dict[str, WrittenJoint])
             factor *= at.multiplier
             at = own[at.follows]
         mimic = Mimic(mimic.joint, factor, shift)  # type: ignore[arg-type]
-    drive = joint.drive  # a number that is not the file's was set since, and is meant as it is
+    effects = joint.effects  # a number that is not the file's was set since, and is meant as it is
     damping, friction = (
         of_file if float(of_file) == number else Fraction(number)
-        for of_file, number in ((as_written.damping, drive.damping), (as_written.friction, drive.friction))
+        for of_file, number in ((as_written.damping, effects.damping), (as_written.friction, effects.friction))
     )
-    exact = Drive(Fraction(drive.armature), damping, friction)  # type: ignore[arg-type]
-    return replace(joint, mimic=mimic, drive=exact)
+    exact = JointEffects(Fraction(effects.armature), damping, friction)  # type: ignore[arg-type]
+    return replace(joint, mimic=mimic, effects=exact)
 
 
 def _differences(model: Model, links: Sequence[WrittenLink], joints: Sequence[WrittenJoint]) -> Iterator[str]:

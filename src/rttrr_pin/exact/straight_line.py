@@ -21,8 +21,8 @@ from rttrr_pin.compile.expression import Graph, Node, Op
 from rttrr_pin.core.dynamics import body_of
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import Arithmetic
-from rttrr_pin.exact.intervals import ball
-from rttrr_pin.exact.parameters import Numbers, written
+from rttrr_pin.exact.intervals import interval
+from rttrr_pin.exact.parameters import Numbers, exact_parameters
 from rttrr_pin.exact.recursion import Slots, results_of
 
 FORM = {
@@ -81,13 +81,13 @@ class Straight:
 
     def ready(self) -> Callable[[Sequence[float]], list[arb]]:
         """A function from a state's numbers to results, to the precision in force."""
-        given = [ball(value).rsqrt() if root else ball(value) for value, root in self.constants]
+        given = [interval(value).rsqrt() if root else interval(value) for value, root in self.constants]
         known, run = self.prepare(given), self.run
         return lambda numbers: run(known, [arb(x) for x in numbers])
 
 
 @lru_cache(maxsize=16)
-def straight(model: Model, slots: Slots, numbers: Numbers) -> Straight:
+def straight_line(model: Model, slots: Slots, numbers: Numbers) -> Straight:
     """The operations of a robot, whose inputs are q, v, a, then f and n of each payload."""
     graph = ExactGraph()
     width = model.nq + 2 * model.nv + 6 * len(slots)
@@ -106,7 +106,7 @@ def straight(model: Model, slots: Slots, numbers: Numbers) -> Straight:
     if numbers == "doubles":
         bodies = [body_of(*pair, arithmetic.number) for pair in zip(model.joints, model.links, strict=True)]
     else:
-        of_file = written(model, numbers)
+        of_file = exact_parameters(model, numbers)
         model, bodies = of_file.model, of_file.bodies(arithmetic, inverse_root)
     results = results_of(model, arithmetic, inputs, slots, bodies)
     nodes = [x.number if isinstance(x, Node) else graph.constant(x) for x in results]

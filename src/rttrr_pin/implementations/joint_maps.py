@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.core.joint import Drive, JointType, Mimic
+from rttrr_pin.core.joint import JointEffects, JointType, Mimic
 from rttrr_pin.core.model import Model
 
 Array = NDArray[np.float64]
@@ -29,7 +29,7 @@ class OracleJoint:
         own_q: where its coordinates are in our q; of a follower those of the joint it follows.
         own_v: where its rates are in our v, a, tau; likewise.
         mimic: whom it follows.
-        drive: what it adds to its driving force.
+        effects: what it adds to its driving force.
     """
 
     type: JointType
@@ -38,7 +38,7 @@ class OracleJoint:
     own_q: slice
     own_v: slice
     mimic: Mimic | None
-    drive: Drive
+    effects: JointEffects
 
     def own(self, q: Array, v: Array, a: Array) -> tuple[Array, Array, Array]:
         """Its coordinates, rates and accelerations from ours, (N, nq) and (N, nv): a follower's from its leader's."""
@@ -61,9 +61,9 @@ def own_slices(model: Model) -> list[tuple[slice, slice]]:
     return [found.get(joint.mimic.joint if joint.mimic else i, none) for i, joint in enumerate(model.joints)]
 
 
-def friction(drive: Drive, v: Array) -> Array:
-    """Damping v + friction sign(v), as `Drive` has it."""
-    return drive.damping * v + drive.friction * np.sign(v)
+def friction(effects: JointEffects, v: Array) -> Array:
+    """Damping v + friction sign(v), as `JointEffects` has it."""
+    return effects.damping * v + effects.friction * np.sign(v)
 
 
 def reduce_forces(joints: Sequence[OracleJoint], forces: Array) -> Array:

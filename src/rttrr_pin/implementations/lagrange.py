@@ -110,9 +110,9 @@ def lagrange(
     slope = _slope(model, links, q, v, arithmetic)
     turning = gyroscopic(model, v, [value_of(x) for x in p])
     states = joint_states(model, arithmetic, q, v, a)
-    drives = drive_power(model, arithmetic, states, joint_states(model, outer, q_o, v_o, a))
+    effects = drive_power(model, arithmetic, states, joint_states(model, outer, q_o, v_o, a))
     surroundings = payload_power(payloads, moving)
-    tau_joint = [value_of(part_of(drives, j)) for j in n]
+    tau_joint = [value_of(part_of(effects, j)) for j in n]
     given = [value_of(part_of(surroundings, j)) for j in n]
     tau = [p_dot[j] - slope[j] + turning[j] + given[j] + tau_joint[j] for j in n]
     return tau, tau_joint

@@ -17,8 +17,8 @@ on the robot, at the link's centre of mass, in world axes.
 | floating | position, quaternion (x, y, z, w); twist in {i} | three slides likewise and a ball, (w, x, y, z) |
 | one that follows another | none | its own |
 
-Armature, damping and friction are added by the rule of `Drive`, as MuJoCo's own are other things: its friction is a
-constraint that holds still what it can.
+Armature, damping and friction are added by the rule of `JointEffects`, as MuJoCo's own are other things: its friction
+is a constraint that holds still what it can.
 """
 
 from __future__ import annotations
@@ -119,7 +119,7 @@ class MujocoOracle:
         tau, own = motion.in_links(self.joints, theirs), np.zeros_like(theirs)
         for joint in self.joints:
             _, rates, accelerations = joint.own(q, v, a)
-            own[:, joint.v] = joint.drive.armature * accelerations + friction(joint.drive, rates)
+            own[:, joint.v] = joint.effects.armature * accelerations + friction(joint.effects, rates)
         return reduce_forces(self.joints, tau + own), reduce_forces(self.joints, own)
 
     def _net(self, record: Record) -> tuple[Array, Array]:

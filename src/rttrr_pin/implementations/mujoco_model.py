@@ -46,14 +46,14 @@ DROPPED = ("mujoco", "visual", "collision")
 TURNS_TENSORS = tuple(int(part) for part in mujoco.__version__.split(".")[:2]) >= (3, 14)
 """Whether MuJoCo heeds the rpy of `<inertial>`."""
 
-SLIDE, HINGE, BALL = mujoco.mjtJoint.mjJNT_SLIDE, mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_BALL
+SLIDE, HINGE, INTERVAL = mujoco.mjtJoint.mjJNT_SLIDE, mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_BALL
 
 MADE_OF = {
     JointType.REVOLUTE: (HINGE,),
     JointType.CONTINUOUS: (HINGE,),
     JointType.PRISMATIC: (SLIDE,),
     JointType.PLANAR: (SLIDE, SLIDE, HINGE),
-    JointType.FLOATING: (SLIDE, SLIDE, SLIDE, BALL),
+    JointType.FLOATING: (SLIDE, SLIDE, SLIDE, INTERVAL),
     JointType.FIXED: (),
 }
 """MuJoCo's joints that make one of ours, in the order in which they move their body."""
@@ -97,7 +97,7 @@ def mujoco_joints(model: Model, compiled: Any) -> list[OracleJoint]:
             first = compiled.body_jntadr[compiled.body(PREFIX + link.name).id]
             q, v = int(compiled.jnt_qposadr[first]), int(compiled.jnt_dofadr[first])
             at_q, at_v = slice(q, q + joint.nq), slice(v, v + joint.nv)
-            found.append(OracleJoint(joint.type, at_q, at_v, own_q, own_v, joint.mimic, joint.drive))
+            found.append(OracleJoint(joint.type, at_q, at_v, own_q, own_v, joint.mimic, joint.effects))
     return found
 
 

@@ -67,7 +67,7 @@ class PinocchioOracle:
         self.model = model
         self.joints = pin_joints(model, self.pin_model)
         for joint in self.joints:
-            self.pin_model.armature[joint.v] = joint.drive.armature
+            self.pin_model.armature[joint.v] = joint.effects.armature
         self.links = pin_links(model, self.pin_model)
         self.data = self.pin_model.createData()
         self._held = [self._held_by(i) for i in range(len(self.links))]

@@ -55,7 +55,7 @@ def pin_joints(model: Model, pin_model: Any) -> list[PinJoint]:
             number = pin_model.getJointId(joint.name)
             theirs = pin_model.joints[number]
             q, v = slice(theirs.idx_q, theirs.idx_q + theirs.nq), slice(theirs.idx_v, theirs.idx_v + theirs.nv)
-            found.append(PinJoint(joint.type, q, v, own_q, own_v, joint.mimic, joint.drive, number))
+            found.append(PinJoint(joint.type, q, v, own_q, own_v, joint.mimic, joint.effects, number))
     return found
 
 
@@ -78,8 +78,8 @@ def driving_forces(joints: Sequence[PinJoint], tau: Array, motion: Motion) -> tu
     total = tau.copy()
     for joint in joints:
         v, a = motion.v[:, joint.v], motion.a[:, joint.v]
-        resisting = friction(joint.drive, v)
-        own[:, joint.v] = joint.drive.armature * a + resisting
+        resisting = friction(joint.effects, v)
+        own[:, joint.v] = joint.effects.armature * a + resisting
         total[:, joint.v] += resisting
     return total, own
 

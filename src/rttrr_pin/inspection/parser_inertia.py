@@ -56,10 +56,10 @@ def _sorted_moments(tensor: Array, negligible: float) -> Array:
 
 def pinocchio_sum(document: Document) -> Iterator[str]:
     """Moving links that are merged with others, and have no positive mass then."""
-    for name, lump in lumps(document).items():
-        inertials = [document.links[member].inertial for member in lump.members]
+    for name, regroup in lumps(document).items():
+        inertials = [document.links[member].inertial for member in regroup.members]
         massive = sum(inertial is not None and inertial.mass.exact != 0 for inertial in inertials)
-        if name != document.root and massive > 1 and lump.mass <= EPS:
+        if name != document.root and massive > 1 and regroup.mass <= EPS:
             yield name
 
 
@@ -98,11 +98,11 @@ def mujoco_rounding(document: Document) -> Iterator[str]:
 
 def mujoco_minimum(document: Document) -> Iterator[str]:
     """Moving links with too little mass or inertia; collision shapes stand in for a missing <inertial>."""
-    for name, lump in lumps(document, massive_only=True).items():
-        if name == document.root or any(_from_shapes(document, member) for member in lump.members):
+    for name, regroup in lumps(document, massive_only=True).items():
+        if name == document.root or any(_from_shapes(document, member) for member in regroup.members):
             continue
-        smallest = SMALLEST_MOVING if len(lump.members) == 1 else SMALLEST_EIGENVALUE
-        if lump.mass < SMALLEST_MOVING or float(_sorted_moments(lump.inertia, 0.0)[0]) < smallest:
+        smallest = SMALLEST_MOVING if len(regroup.members) == 1 else SMALLEST_EIGENVALUE
+        if regroup.mass < SMALLEST_MOVING or float(_sorted_moments(regroup.inertia, 0.0)[0]) < smallest:
             yield name
 
 
@@ -120,7 +120,7 @@ def _moving(document: Document) -> Iterator[tuple[str, Mass]]:
 
 def mujoco_negative(document: Document) -> Iterator[str]:
     """Negative masses of links that are merged; of a link by itself, that is too little mass."""
-    merged = {name for lump in lumps(document).values() if len(lump.members) > 1 for name in lump.members}
+    merged = {name for regroup in lumps(document).values() if len(regroup.members) > 1 for name in regroup.members}
     return (name for name, inertial in _moving(document) if name in merged and inertial.mass.exact < 0)
 
 
@@ -157,9 +157,9 @@ def _differ(turned: Array, tensor: Array) -> bool:
 
 def mujoco_fused(document: Document) -> Iterator[str]:
     """Merged links of which MuJoCo exchanges the placement and the inertial frame, or turns the tensor twice."""
-    for base, lump in lumps(document).items():
+    for base, regroup in lumps(document).items():
         R, p = document.placements[base]
-        for name in lump.members[1:] if base != document.root else ():
+        for name in regroup.members[1:] if base != document.root else ():
             inertial, (R_member, p_member) = document.links[name].inertial, document.placements[name]
             if inertial is None or inertial.mass.exact < SMALLEST_MOVING:
                 continue
@@ -218,12 +218,12 @@ def _gazebo(document: Document) -> Iterator[tuple[str, bool | None]]:
         joint = document.carried_by.get(name)
         if joint is not None and joint.parent in dropped:
             dropped.add(name)
-    for name, lump in found.items():
-        if name != "world" and not dropped & set(lump.members):
-            largest = float(np.abs(lump.inertia).max())
-            diagonal = _products(lump.inertia) <= GAZEBO_DIAGONAL * largest
-            moments = _sorted_moments(lump.inertia, GAZEBO_DIAGONAL * largest)
-            rounding = (4.0 * EPS if diagonal and len(lump.members) == 1 else GAZEBO_ROUNDING) * largest
+    for name, regroup in found.items():
+        if name != "world" and not dropped & set(regroup.members):
+            largest = float(np.abs(regroup.inertia).max())
+            diagonal = _products(regroup.inertia) <= GAZEBO_DIAGONAL * largest
+            moments = _sorted_moments(regroup.inertia, GAZEBO_DIAGONAL * largest)
+            rounding = (4.0 * EPS if diagonal and len(regroup.members) == 1 else GAZEBO_ROUNDING) * largest
             yield name, _beyond(moments, GAZEBO_EPS * abs(float(moments.sum())), rounding)
 
 
@@ -239,7 +239,7 @@ def gazebo_rounding(document: Document) -> Iterator[str]:
 
 def gazebo_massless(document: Document) -> Iterator[str]:
     """Lumps whose mass is not above zero."""
-    return (name for name, lump in lumps(document, spare="world").items() if name != "world" and lump.mass <= 0.0)
+    return (name for name, regroup in lumps(document, spare="world").items() if name != "world" and regroup.mass <= 0.0)
 
 
 def gazebo_empty(document: Document) -> Iterator[str]:

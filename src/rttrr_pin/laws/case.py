@@ -114,7 +114,7 @@ class Case:
     @cached_property
     def _unit_forces(self) -> Rows:
         """[j][i]: tau_i for an acceleration of 1 along rate j, without gravity, rates and drives; duals in time."""
-        model, n = self.model.without_drives(), self.model.nv
+        model, n = self.model.without_joint_effects(), self.model.nv
         units = [[int(i == j) for i in range(n)] for j in range(n)]
         q_t = self.flow[0]
         return [dynamics(model, self.duals, q_t, self.at_rest, unit, (), self.links, ZERO).tau for unit in units]

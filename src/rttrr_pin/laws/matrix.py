@@ -58,7 +58,7 @@ def skew(case: Case) -> Iterator[Scalar]:
     (`energy.gyroscopic`). Slips in C are slips in c = tau(q, v, 0) without gravity.
     """
     n = range(case.model.nv)
-    model = case.model.without_drives()
+    model = case.model.without_joint_effects()
     v = [Dual(x, {j: 1}) for j, x in enumerate(case.v)]
     c = dynamics(model, case.duals, case.q, v, case.at_rest, (), case.links, ZERO).tau
     S = []
@@ -104,8 +104,8 @@ def _with_armature(case: Case) -> Rows:
     states = joint_states(case.model, case.duals, case.q, rates, case.at_rest)
     M = [list(row) for row in case.kinetic_matrix]
     for joint, state in zip(case.model.joints, states, strict=True):
-        if joint.drive.armature:
-            armature = case.arithmetic.number(joint.drive.armature, 0.0)
+        if joint.effects.armature:
+            armature = case.arithmetic.number(joint.effects.armature, 0.0)
             for rate in state.v:
                 for i in rate.parts:
                     for j in rate.parts:

@@ -17,7 +17,7 @@ LAW_GATE = "what a law says is zero lies within its running error bound of zero;
 def show_laws(result: LawReport, console: Console) -> None:
     """A row for each law, the statements of those that are violated, and the verdict."""
     base = ", floating base" if result.base == "floating" else ""
-    told = f"{result.n_states:,} {result.family} states, seed {result.seed}, payload {result.payload}{base}"
+    told = f"{result.n_states:,} {result.sampling} states, seed {result.seed}, payload {result.payload}{base}"
     console.print(Text("laws", "bold"), Text(f"of {result.robot}, by themselves: {told}"))
     table = Table("law", "", "share", "at state", "violated in", "", box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
     for column in (2, 3, 4):
@@ -39,7 +39,7 @@ def laws_data(result: LawReport) -> dict[str, Any]:
     """The outcome: per law the worst share and where, and the verdict."""
     return {
         "n_states": result.n_states,
-        "family": result.family,
+        "family": result.sampling,
         "seed": result.seed,
         "payload": result.payload,
         "gate": LAW_GATE,

@@ -59,7 +59,7 @@ class LawReport:
         robot: its name.
         base: "fixed" or "floating".
         n_states: how many states each law was tried on.
-        family: how they were drawn.
+        sampling: how they were drawn.
         seed: of the generator.
         payload: what the robot carried, in words.
         rows: one for each law, in the order of their ids.
@@ -69,7 +69,7 @@ class LawReport:
     robot: str
     base: str
     n_states: int
-    family: str
+    sampling: str
     seed: int
     payload: str
     rows: tuple[LawRow, ...]
@@ -90,7 +90,7 @@ def check_laws(
     robot: Robot,
     states: int = 1000,
     seed: int = 0,
-    family: str = "uniform",
+    sampling: str = "uniform",
     payload: Wrench | None = None,
     select: Iterable[str] = (),
     progress: Callable[[int], None] | None = None,
@@ -104,7 +104,7 @@ def check_laws(
         robot: the robot.
         states: how many.
         seed: of the generator; the states are those that `validate` draws for the same seed and family.
-        family: how they are drawn, one of `FAMILIES`.
+        sampling: how they are drawn, one of `SAMPLINGS`.
         payload: None for a random one in each state, at the last link in its axes and at another in base axes; or a
             wrench, the same in every state.
         select: prefixes of the ids of the laws to try, such as `"M"`; none means all.
@@ -124,7 +124,7 @@ def check_laws(
     if not robot.model.links:
         raise InputError(f"robot {robot.name!r} has no joint, so that no law says anything of it")
     start = time.perf_counter()
-    sampler = Sampler(robot.model, family, seed, robot.link_names[-1] if payload is None else robot.load_of(payload))
+    sampler = Sampler(robot.model, sampling, seed, robot.link_names[-1] if payload is None else robot.load_of(payload))
     rows = tuple(LawRow(law) for law in laws)
     for part in blocks(states, BLOCK):
         drawn = sampler.draw(part.start, part.stop - part.start)
@@ -137,7 +137,7 @@ def check_laws(
         robot=robot.name,
         base="floating" if robot.model.floating else "fixed",
         n_states=states,
-        family=family,
+        sampling=sampling,
         seed=seed,
         payload=in_words(payload or "random"),
         rows=rows,

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.core.joint import AXIAL, Drive, Joint, JointType, Limits, Mimic
+from rttrr_pin.core.joint import AXIAL, Joint, JointEffects, JointType, Limits, Mimic
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.errors import InputError, UrdfError, shortened
 from rttrr_pin.urdf.checks import check_document
@@ -159,16 +159,16 @@ def _joint(joint: Any, parent: int, mimic: Mimic | None) -> Joint:
         limits=_limits(joint.limit, kind),
         rotated=not np.array_equal(R, np.eye(3)),
         mimic=mimic,
-        dynamics=_drive(joint.dynamics),
-        drive=_drive(joint.dynamics),
+        dynamics=_joint_effects(joint.dynamics),
+        effects=_joint_effects(joint.dynamics),
     )
 
 
-def _drive(dynamics: Any) -> Drive:
+def _joint_effects(dynamics: Any) -> JointEffects:
     """Damping and friction of the file; URDF has no word for armature."""
     if dynamics is None:
-        return Drive()
-    return Drive(damping=float(dynamics.damping or 0.0), friction=float(dynamics.friction or 0.0))
+        return JointEffects()
+    return JointEffects(damping=float(dynamics.damping or 0.0), friction=float(dynamics.friction or 0.0))
 
 
 def _placement(origin: Array | None) -> tuple[Array, Array]:

@@ -13,17 +13,17 @@ import numpy as np
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.wrench import LINK_QUANTITIES, LinkWrenches
 from rttrr_pin.errors import InputError
-from rttrr_pin.exact.adjudication import Off, Settlement, Side, in_order, nearest
-from rttrr_pin.exact.enclosures import Certificate, certify
-from rttrr_pin.exact.parameters import Numbers, written
+from rttrr_pin.exact.adjudication import Adjudication, Assessment, Deviation, in_order, nearest
+from rttrr_pin.exact.enclosures import Enclosures, enclose
+from rttrr_pin.exact.parameters import Numbers, exact_parameters
 from rttrr_pin.implementations import Evaluation
 from rttrr_pin.validation.compare import Comparison, Gap, ratio
 from rttrr_pin.validation.states import States
 
 
-def settle_state(
+def adjudicate_state(
     model: Model, drawn: States, ours: LinkWrenches, bound: LinkWrenches, others: Sequence[tuple[str, Evaluation]]
-) -> tuple[Settlement, ...]:
+) -> tuple[Adjudication, ...]:
     """Who is right in one state, ours or each of the others; the truth is the same for all.
 
     Args:
@@ -33,25 +33,25 @@ def settle_state(
         bound: running error bound of ours.
         others: by name, an oracle's result, and what it rounds beyond ours.
     """
-    certificate = certify(model, drawn.q, drawn.v, drawn.a, drawn.loads, true_numbers(model))
-    settled = (settle(model, certificate, ours, theirs, bound, name, drawn.first) for name, theirs in others)
-    return tuple(settled)
+    enclosures = enclose(model, drawn.q, drawn.v, drawn.a, drawn.loads, true_numbers(model))
+    adjudicated = (adjudicate(model, enclosures, ours, theirs, bound, name, drawn.first) for name, theirs in others)
+    return tuple(adjudicated)
 
 
-def settle(
+def adjudicate(
     model: Model,
-    certificate: Certificate,
+    enclosures: Enclosures,
     ours: LinkWrenches,
     theirs: Evaluation,
     bound: LinkWrenches,
     oracle: str,
     state: int = 0,
-) -> Settlement:
+) -> Adjudication:
     """Who is right, by enclosures of the true values of one state, (1, ...) each.
 
     Args:
         model: the robot.
-        certificate: the true values.
+        enclosures: the true values.
         ours: our result.
         theirs: the oracle's, and what it rounds beyond ours.
         bound: running error bound of ours.
@@ -66,11 +66,13 @@ def settle(
         (oracle, theirs.wrenches, given, theirs.rounding),
     ):
         comparison = Comparison(model, ("tau", *known))
-        truth = Evaluation(nearest(certificate, computed), rounding)
+        truth = Evaluation(nearest(enclosures, computed), rounding)
         rows = zip(comparison.rows, comparison.gaps(computed, truth, bound), strict=True)
-        offs = [Off(row.quantity, row.at, float(gap.relative[0]), _share(gap, name == "ours")) for row, gap in rows]
-        sides.append(Side(name, in_order(model, offs)))
-    return Settlement(state, int(np.max(certificate.bits)), *sides)
+        deviations = [
+            Deviation(row.quantity, row.at, float(gap.relative[0]), _share(gap, name == "ours")) for row, gap in rows
+        ]
+        sides.append(Assessment(name, in_order(model, deviations)))
+    return Adjudication(state, int(np.max(enclosures.bits)), *sides)
 
 
 def _share(gap: Gap, of_ours: bool) -> float:
@@ -81,7 +83,7 @@ def _share(gap: Gap, of_ours: bool) -> float:
 def true_numbers(model: Model) -> Numbers:
     """Whose numbers decide who is right: the file's, as any program reads them; without a file, the model's own."""
     try:
-        written(model, "read")
+        exact_parameters(model, "read")
     except InputError:
         return "doubles"
     return "read"

@@ -47,7 +47,7 @@ def validate(
     ] = "rttrr",
     states: Annotated[int, typer.Option(help="How many states to compare.")] = STATES,
     seed: Annotated[int, typer.Option(help="The same seed gives the same states.")] = 0,
-    family: Annotated[
+    sampling: Annotated[
         str,
         typer.Option(help="How states are drawn: uniform, corners, zeros, one-joint, large-velocities, mixed."),
     ] = "uniform",
@@ -113,14 +113,14 @@ def validate(
             "--oracle more than once": len(oracles) > 1,
         }
         _refuse([option for option, given in one_robot.items() if given])
-        return _validate_several(several, Task(states, seed, family, oracles[0]), json, quiet)
+        return _validate_several(several, Task(states, seed, sampling, oracles[0]), json, quiet)
     loading: dict[str, Any] = {"base": base, "friction": friction}
     if gravity is not None:
         loading["gravity"] = numbers_of("--gravity", gravity, 3)
     loaded = load(robot, **loading)
     chosen: dict[str, Any] = {
         "seed": seed,
-        "family": family,
+        "family": sampling,
         "payload": _payload(payload, payload_link, payload_axes),
         "oracle": oracles,
     }
@@ -144,7 +144,7 @@ def validate(
     again = {
         "--states": states if states != STATES else None,
         "--seed": seed or None,
-        "--family": family if family != "uniform" else None,
+        "--family": sampling if sampling != "uniform" else None,
         "--payload": payload,
         "--payload-link": payload_link,
         "--payload-axes": payload_axes if payload_axes != "link" else None,

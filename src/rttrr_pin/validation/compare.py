@@ -4,7 +4,7 @@ The gate, for each state, quantity and link (or joint):
 
     |ours - oracle| <= |bound| + (|bound of x| + 4 eps |x| + cancelled)
 
-with Euclidean norms. `bound` is the running error bound on our own rounding (`certify.rounding`). The bracket is the
+with Euclidean norms. `bound` is the running error bound on our own rounding (`enclose.rounding`). The bracket is the
 oracle's allowance. It adds up the same terms in another order and in other axes, so it gets the same bound once more,
 but for the whole vector x that the quantity belongs to: F, N, f or n of the link itself, and for tau the n of the
 joint (its f, where it slides), of which tau is one component. In other axes an error of one component is an error of
@@ -47,7 +47,7 @@ class Worst:
                 self.value, self.state = float(values[k]), first + k
 
 
-SETTLED = 10
+ADJUDICATED = 10
 """Failing states that are remembered, the worst."""
 
 
@@ -57,7 +57,7 @@ class Ranking:
 
     Attributes:
         failing: how many lie outside the gate.
-        worst: those that lie farthest outside, worst first, at most `SETTLED`: share and state.
+        worst: those that lie farthest outside, worst first, at most `ADJUDICATED`: share and state.
         passing: the state within the gate that comes closest to it.
     """
 
@@ -70,7 +70,7 @@ class Ranking:
         outside = np.flatnonzero(shares > 1.0)
         self.failing += len(outside)
         found = self.worst + [(float(shares[k]), first + int(k)) for k in outside]
-        self.worst = sorted(found, key=lambda pair: (-pair[0], pair[1]))[:SETTLED]
+        self.worst = sorted(found, key=lambda pair: (-pair[0], pair[1]))[:ADJUDICATED]
         if len(outside) < len(shares):
             k = int(np.argmax(np.where(shares > 1.0, -1.0, shares)))
             self.passing.see(shares[k : k + 1], first + k)

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import LinkWrenches, Wrench
 from rttrr_pin.errors import InputError
-from rttrr_pin.exact import Settlement
+from rttrr_pin.exact import Adjudication
 from rttrr_pin.implementations import Evaluation, Oracle, make_oracle
 from rttrr_pin.robot import Robot
-from rttrr_pin.validation.adjudicate import settle_state
+from rttrr_pin.validation.adjudicate import adjudicate_state
 from rttrr_pin.validation.compare import Comparison, Gap, Ranking, Row
 from rttrr_pin.validation.ours import Ours
 from rttrr_pin.validation.states import Sampler, States
@@ -29,7 +29,7 @@ Oracles = str | Sequence[str]
 
 
 @dataclass(frozen=True, slots=True)
-class Opponent:
+class Reference:
     """Another program, and what was seen of it.
 
     Attributes:
@@ -62,27 +62,27 @@ class Sides:
 
 
 @dataclass(frozen=True, slots=True)
-class Contest:
+class ComparisonRun:
     """Ours and other programs on the states of a robot.
 
     Attributes:
         robot: the robot.
         sampler: draws the states.
         ours: our side.
-        opponents: the others.
+        references: the others.
         ranking: the states to look at again, by the largest share against any opponent.
     """
 
     robot: Robot
     sampler: Sampler
     ours: Ours
-    opponents: tuple[Opponent, ...]
+    references: tuple[Reference, ...]
     ranking: Ranking = field(default_factory=Ranking)
 
     @classmethod
     def of(
-        cls, robot: Robot, seed: int, family: str, payload: Wrench | str | None, oracle: Oracles, states: int
-    ) -> Contest:
+        cls, robot: Robot, seed: int, sampling: str, payload: Wrench | str | None, oracle: Oracles, states: int
+    ) -> ComparisonRun:
         """Prepare to compare so many states.
 
         Raises:
@@ -93,30 +93,30 @@ class Contest:
             raise InputError(f"robot is a {type(robot).__name__}: pass a Robot, such as rttrr_pin.load({robot!r})")
         if not robot.model.links:
             raise InputError(f"robot {robot.name!r} has no joint, so that there is nothing to compare")
-        sampler = Sampler(robot.model, family, seed, _payload(robot, payload))
+        sampler = Sampler(robot.model, sampling, seed, _payload(robot, payload))
         others = [make_oracle(name, robot.model) for name in _names(oracle)]
-        opponents = (Opponent(other, Comparison(robot.model, other.quantities)) for other in others)
-        return cls(robot, sampler, Ours(robot, states), tuple(opponents))
+        references = (Reference(other, Comparison(robot.model, other.quantities)) for other in others)
+        return cls(robot, sampler, Ours(robot, states), tuple(references))
 
     @property
-    def rows(self) -> list[tuple[Opponent, Row]]:
+    def rows(self) -> list[tuple[Reference, Row]]:
         """What was seen of each quantity at each place, opponent by opponent."""
-        return [(opponent, row) for opponent in self.opponents for row in opponent.comparison.rows]
+        return [(reference, row) for reference in self.references for row in reference.comparison.rows]
 
     def sides(self, drawn: States) -> Sides:
         """Ours, the bound on it, and the opponents'."""
         with np.errstate(over="ignore", invalid="ignore"):  # what overflows is shown as a failure, with its state
             ours, bound = self.ours(drawn)
             _check_size(ours, drawn.first)
-            theirs = (x.oracle.evaluate(drawn.q, drawn.v, drawn.a, drawn.loads) for x in self.opponents)
+            theirs = (x.oracle.evaluate(drawn.q, drawn.v, drawn.a, drawn.loads) for x in self.references)
             return Sides(ours, bound, tuple(theirs))
 
     def add(self, drawn: States) -> None:
         """Take in some states."""
         sides = self.sides(drawn)
         shares = [
-            opponent.comparison.add(drawn.first, sides.ours, theirs, sides.bound)
-            for opponent, theirs in zip(self.opponents, sides.theirs, strict=True)
+            reference.comparison.add(drawn.first, sides.ours, theirs, sides.bound)
+            for reference, theirs in zip(self.references, sides.theirs, strict=True)
         ]
         self.ranking.see(np.max(shares, axis=0), drawn.first)
 
@@ -126,17 +126,17 @@ class Contest:
 
     def gaps_of(self, sides: Sides) -> list[Gap]:
         """The same of what is computed already."""
-        pairs = zip(self.opponents, sides.theirs, strict=True)
+        pairs = zip(self.references, sides.theirs, strict=True)
         return [gap for other, theirs in pairs for gap in other.comparison.gaps(sides.ours, theirs, sides.bound)]
 
-    def settled(self, drawn: States) -> tuple[Settlement, ...]:
+    def adjudicated(self, drawn: States) -> tuple[Adjudication, ...]:
         """Who is right in one state, one settlement for each opponent."""
-        return self.settled_of(drawn, self.sides(drawn))
+        return self.adjudicate_results(drawn, self.sides(drawn))
 
-    def settled_of(self, drawn: States, sides: Sides) -> tuple[Settlement, ...]:
+    def adjudicate_results(self, drawn: States, sides: Sides) -> tuple[Adjudication, ...]:
         """The same of what is computed already."""
-        named = [(x.oracle.name, theirs) for x, theirs in zip(self.opponents, sides.theirs, strict=True)]
-        return settle_state(self.robot.model, drawn, sides.ours, sides.bound, named)
+        named = [(x.oracle.name, theirs) for x, theirs in zip(self.references, sides.theirs, strict=True)]
+        return adjudicate_state(self.robot.model, drawn, sides.ours, sides.bound, named)
 
 
 def _names(oracle: Oracles) -> list[str]:

@@ -16,7 +16,7 @@ from rttrr_pin.errors import ModelMismatchError, RttrrError, UnknownNameError
 from rttrr_pin.implementations import ORACLES
 from rttrr_pin.loading import load
 from rttrr_pin.validation.run import validate
-from rttrr_pin.validation.states import FAMILIES, LAST_STATE
+from rttrr_pin.validation.states import LAST_STATE, SAMPLINGS
 
 BASES: tuple[Literal["fixed", "floating"], ...] = ("fixed", "floating")
 
@@ -28,13 +28,13 @@ class Task:
     Attributes:
         states: how many for each base.
         seed: of the generator.
-        family: how states are drawn.
+        sampling: how states are drawn.
         oracle: the program to compare with.
     """
 
     states: int = 10_000
     seed: int = 0
-    family: str = "uniform"
+    sampling: str = "uniform"
     oracle: str = "pinocchio"
 
 
@@ -99,8 +99,8 @@ def validate_many(
 def _check(task: Task) -> None:
     """What is wrong for every robot is an error once, not a row for each."""
     whole_number("states", task.states, 1, LAST_STATE, "10^15, since none would prove nothing")
-    if task.family not in FAMILIES:
-        raise UnknownNameError("family of states", task.family, FAMILIES)
+    if task.sampling not in SAMPLINGS:
+        raise UnknownNameError("family of states", task.sampling, SAMPLINGS)
     if task.oracle not in ORACLES:
         raise UnknownNameError("oracle", task.oracle, ORACLES)
 
@@ -130,7 +130,7 @@ def _one(job: Job) -> Entry:
     start = time.perf_counter()
     try:
         robot = load(Path(path), base=base)
-        result = validate(robot, task.states, task.seed, task.family, oracle=task.oracle)
+        result = validate(robot, task.states, task.seed, task.sampling, oracle=task.oracle)
     except RttrrError as error:
         verdict: Literal["disagree", "unusable"] = "disagree" if isinstance(error, ModelMismatchError) else "unusable"
         told = str(error).replace(str(path), Path(path).name)

@@ -13,8 +13,8 @@ from rich.text import Text
 
 from rttrr_pin.core.model import STANDARD_GRAVITY
 from rttrr_pin.core.wrench import LINK_QUANTITIES, QUANTITIES, LinkWrenches
-from rttrr_pin.validation import Row, StateReport, Validation, View
-from rttrr_pin.validation.report_adjudication import show_settled, show_settlement
+from rttrr_pin.validation import Row, StateComparison, StateReport, Validation
+from rttrr_pin.validation.report_adjudication import show_adjudicated, show_adjudication
 from rttrr_pin.validation.report_several import against, places, several_table, word
 
 Array = NDArray[np.float64]
@@ -30,7 +30,7 @@ def show_validation(result: Validation, console: Console, rerun: str = "", full:
     console.print(
         Text(result.robot, "bold"),
         Text(
-            f"{result.n_states:,} {result.family} states, seed {result.seed}, payload {result.payload}"
+            f"{result.n_states:,} {result.sampling} states, seed {result.seed}, payload {result.payload}"
             f"{_unusual(result)}; ours against {result.oracle}"
         ),
     )
@@ -47,7 +47,7 @@ def show_validation(result: Validation, console: Console, rerun: str = "", full:
         console.print(Text(f"the worst of {len(grouped)} rows for each quantity; --full shows all"))
     console.print(Text(LEGEND, "dim"))
     _verdict(result.agrees, result, console)
-    show_settled(result, console)
+    show_adjudicated(result, console)
     worst = result.worst
     if worst is not None and rerun:
         where = f"worst state {worst.share.state} ({worst.quantity} at {worst.at}{against(result, worst)})"
@@ -69,10 +69,10 @@ def show_state(report: StateReport, console: Console) -> None:
         if len(report.views) > 1:
             console.print(Text(f"ours against {view.oracle}", "bold"))
         _show_view(report, view, console)
-    show_settlement([view.settled for view in report.views], console)
+    show_adjudication([view.adjudicated for view in report.views], console)
 
 
-def _show_view(report: StateReport, view: View, console: Console) -> None:
+def _show_view(report: StateReport, view: StateComparison, console: Console) -> None:
     """Ours beside one oracle's."""
     table = Table("", "ours", "theirs", "differ", "in eps", "", box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
     table.columns[0].overflow = "fold"
@@ -105,8 +105,8 @@ def _unusual(result: Validation) -> str:
     parts = ["floating base"] if result.base == "floating" else []
     if result.gravity != STANDARD_GRAVITY:
         parts.append(f"gravity {_numbers(np.array(result.gravity))} m/s^2")
-    if result.drives:
-        parts.append(f"drives of {len(result.drives)} joints")
+    if result.effects:
+        parts.append(f"drives of {len(result.effects)} joints")
     return "".join(f", {part}" for part in parts)
 
 
@@ -152,7 +152,7 @@ def _coordinates_table(report: StateReport) -> Table:
     return table
 
 
-def _values(ours: LinkWrenches, view: View) -> Iterable[tuple[Array, Array]]:
+def _values(ours: LinkWrenches, view: StateComparison) -> Iterable[tuple[Array, Array]]:
     """Ours and theirs, in the order of the rows."""
     theirs = view.theirs
     for column in range(ours.tau.shape[1]):

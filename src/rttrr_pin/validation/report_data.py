@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict
 from typing import Any
 
-from rttrr_pin.validation import Against, Row, StateReport, Validation, View
-from rttrr_pin.validation.report_adjudication import settled_data, settlement_data
+from rttrr_pin.validation import ReferenceSummary, Row, StateComparison, StateReport, Validation
+from rttrr_pin.validation.report_adjudication import adjudicated_data, adjudication_data
 
 GATE = (
     "|ours - oracle| <= |bound| + (|bound of x| + 4 eps |x| + cancelled); "
@@ -27,24 +27,24 @@ def validation_data(result: Validation) -> dict[str, Any]:
         "robot": result.robot,
         "base": result.base,
         "gravity": result.gravity,
-        "drives": {name: asdict(drive) for name, drive in result.drives.items()},
+        "drives": {name: asdict(effects) for name, effects in result.effects.items()},
         "ours": result.ours,
         "versions": result.versions,
         "seed": result.seed,
         "n_states": result.n_states,
-        "family": result.family,
+        "family": result.sampling,
         "payload": result.payload,
         "gate": GATE,
         **apart,
         "oracle": result.oracle,
         "verdict": _verdict(result.agrees),
         "failing_states": result.failing,
-        "settled": [settled_data(settled) for settled in result.settled_states],
+        "settled": [adjudicated_data(adjudicated) for adjudicated in result.adjudicated_states],
         "seconds": result.seconds,
     }
 
 
-def _against(other: Against) -> dict[str, Any]:
+def _against(other: ReferenceSummary) -> dict[str, Any]:
     """What was seen of one oracle."""
     quantities: dict[str, dict[str, Any]] = {}
     for row in other.rows:
@@ -93,7 +93,7 @@ def state_data(report: StateReport) -> dict[str, Any]:
     }
 
 
-def _view(view: View) -> dict[str, Any]:
+def _view(view: StateComparison) -> dict[str, Any]:
     """What one oracle says of the state."""
     given = {row.quantity for row in view.rows}
     return {
@@ -110,7 +110,7 @@ def _view(view: View) -> dict[str, Any]:
             }
             for row, gap in zip(view.rows, view.gaps, strict=True)
         ],
-        "settled": settlement_data(view.settled),
+        "settled": adjudication_data(view.adjudicated),
         "verdict": _verdict(view.agrees),
     }
 

@@ -19,7 +19,9 @@ LOOK = {"agree": ("PASS", "bold green"), "disagree": ("FAIL", "bold red"), "unus
 def show_many(entries: Sequence[Entry], task: Task, seconds: float, console: Console) -> None:
     """A row for each robot, then what stops those that were not compared, then the sum."""
     bases = len({entry.base for entry in entries})
-    console.print(Text(f"{len(entries) // bases} robots, {task.states:,} {task.family} states each, seed {task.seed}"))
+    console.print(
+        Text(f"{len(entries) // bases} robots, {task.states:,} {task.sampling} states each, seed {task.seed}")
+    )
     table = Table("robot", "base", "joints", "links", "in eps", "share", "verdict")
     for column in (2, 3, 4, 5):
         table.columns[column].justify = "right"

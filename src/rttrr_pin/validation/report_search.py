@@ -8,10 +8,10 @@ from rich.console import Console
 from rich.text import Text
 
 if TYPE_CHECKING:
-    from rttrr_pin.validation.search import Found
+    from rttrr_pin.validation.search import WorstCase
 
 
-def show_search(found: Found, console: Console, several: bool = False) -> None:
+def show_search(found: WorstCase, console: Console, several: bool = False) -> None:
     """What was found, beside what chance had found; of several oracles, against which."""
     verdict = Text("PASS", "bold green") if found.agrees else Text("FAIL", "bold red")
     against = f" against {found.oracle}" if several else ""
@@ -22,7 +22,7 @@ def show_search(found: Found, console: Console, several: bool = False) -> None:
     console.print(verdict, Text(told), soft_wrap=True)
 
 
-def search_data(found: Found) -> dict[str, Any]:
+def search_data(found: WorstCase) -> dict[str, Any]:
     """The same as data, with the state."""
     return {
         "quantity": found.quantity,

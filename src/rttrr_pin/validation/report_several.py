@@ -9,7 +9,7 @@ from rich.table import Table
 from rich.text import Text
 
 from rttrr_pin.core.wrench import QUANTITIES
-from rttrr_pin.exact import eps_in_words
+from rttrr_pin.exact import format_eps
 from rttrr_pin.validation import Row, Validation
 
 
@@ -68,7 +68,7 @@ def _seen(row: Row | None) -> Text:
         return Text("")
     if row.absolute.value == 0.0:
         return Text("equal")
-    seen = Text(f"{_short(row.share.value)} / {eps_in_words(row.relative.value).removesuffix(' eps')}")
+    seen = Text(f"{_short(row.share.value)} / {format_eps(row.relative.value).removesuffix(' eps')}")
     return seen if row.passed else seen.append(" ").append_text(word(False))
 
 

@@ -12,13 +12,13 @@ import numpy as np
 
 from rttrr_pin.core.batch import blocks
 from rttrr_pin.core.inputs import whole_number
-from rttrr_pin.core.joint import Drive
+from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.core.wrench import Wrench
-from rttrr_pin.exact import Settlement
+from rttrr_pin.exact import Adjudication
 from rttrr_pin.implementations import Oracle
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.compare import Row, Worst
-from rttrr_pin.validation.comparison_run import Contest, Opponent, Oracles
+from rttrr_pin.validation.comparison_run import ComparisonRun, Oracles, Reference
 from rttrr_pin.validation.states import LAST_STATE
 
 BLOCK = 1024
@@ -29,7 +29,7 @@ Progress = Callable[[int], None]
 
 
 @dataclass(frozen=True, slots=True)
-class Against:
+class ReferenceSummary:
     """What was seen of one oracle.
 
     Attributes:
@@ -45,9 +45,9 @@ class Against:
     whole: dict[str, Worst]
 
     @classmethod
-    def of(cls, opponent: Opponent) -> Against:
+    def of(cls, reference: Reference) -> ReferenceSummary:
         """What an opponent's comparison has gathered."""
-        oracle, comparison = opponent.oracle, opponent.comparison
+        oracle, comparison = reference.oracle, reference.comparison
         return cls(oracle.name, oracle.version, tuple(comparison.rows), comparison.whole)
 
     @property
@@ -69,34 +69,34 @@ class Validation:
         robot: its name.
         base: "fixed" or "floating".
         gravity: the field in the base frame [m/s^2].
-        drives: by joint, what joints take themselves; those that take nothing are left out.
+        effects: by joint, what joints take themselves; those that take nothing are left out.
         against: the other programs, and what was seen of each.
         n_states: how many states were compared.
-        family: how they were drawn.
+        sampling: how they were drawn.
         seed: of the generator.
         payload: what the robot carried, in words.
         ours: which program stood on our side, in words.
         seconds: wall time.
         versions: of what took part.
         failing: how many states lie outside the gate of any oracle.
-        settled: who is right, by balls: in the worst failing states, worst first, then in the worst passing one; of
+        adjudicated: who is right, by balls: in the worst failing states, worst first, then in the worst passing one; of
             several oracles one settlement each, in their order, for every such state.
     """
 
     robot: str
     base: str
     gravity: tuple[float, ...]
-    drives: dict[str, Drive]
-    against: tuple[Against, ...]
+    effects: dict[str, JointEffects]
+    against: tuple[ReferenceSummary, ...]
     n_states: int
-    family: str
+    sampling: str
     seed: int
     payload: str
     ours: str
     seconds: float
     versions: dict[str, str] = field(default_factory=dict)
     failing: int = 0
-    settled: tuple[Settlement, ...] = ()
+    adjudicated: tuple[Adjudication, ...] = ()
 
     @property
     def oracle(self) -> str:
@@ -128,17 +128,17 @@ class Validation:
         return max(self.rows, key=lambda row: row.share.value, default=None)
 
     @property
-    def settled_states(self) -> list[tuple[Settlement, ...]]:
+    def adjudicated_states(self) -> list[tuple[Adjudication, ...]]:
         """The settlements state by state, one for each oracle."""
         count = len(self.against)
-        return [self.settled[k : k + count] for k in range(0, len(self.settled), count)]
+        return [self.adjudicated[k : k + count] for k in range(0, len(self.adjudicated), count)]
 
 
 def validate(
     robot: Robot,
     states: int = 10_000,
     seed: int = 0,
-    family: str = "uniform",
+    sampling: str = "uniform",
     payload: Wrench | str | None = None,
     oracle: Oracles = "pinocchio",
     progress: Progress | None = None,
@@ -149,7 +149,7 @@ def validate(
         robot: the robot.
         states: how many.
         seed: of the generator; the same seed gives the same states.
-        family: how they are drawn, one of `FAMILIES`.
+        sampling: how they are drawn, one of `SAMPLINGS`.
         payload: None; a wrench, the same in every state; or `"random"`, another in each state.
         oracle: one of `oracles.ORACLES`, or several: all see the same states.
         progress: called after each block with the number of states done.
@@ -163,27 +163,27 @@ def validate(
     """
     whole_number("states", states, 1, LAST_STATE, "10^15, since none would prove nothing")
     start = time.perf_counter()
-    contest = Contest.of(robot, seed, family, payload, oracle, states)
+    run = ComparisonRun.of(robot, seed, sampling, payload, oracle, states)
     for part in blocks(states, BLOCK):
-        contest.add(contest.sampler.draw(part.start, part.stop - part.start))
+        run.add(run.sampler.draw(part.start, part.stop - part.start))
         if progress is not None:
             progress(part.stop)
-    settled = [contest.settled(contest.sampler.draw(state, 1)) for state in contest.ranking.chosen()]
+    adjudicated = [run.adjudicated(run.sampler.draw(state, 1)) for state in run.ranking.chosen()]
     return Validation(
         robot=robot.name,
         base="floating" if robot.model.floating else "fixed",
         gravity=tuple(robot.model.gravity.tolist()),
-        drives={joint.name: joint.drive for joint in robot.model.joints if joint.drive != Drive()},
-        against=tuple(Against.of(opponent) for opponent in contest.opponents),
+        effects={joint.name: joint.effects for joint in robot.model.joints if joint.effects != JointEffects()},
+        against=tuple(ReferenceSummary.of(reference) for reference in run.references),
         n_states=states,
-        family=family,
+        sampling=sampling,
         seed=seed,
         payload=in_words(payload),
-        ours=contest.ours.name,
+        ours=run.ours.name,
         seconds=time.perf_counter() - start,
-        versions=versions([opponent.oracle for opponent in contest.opponents]),
-        failing=contest.ranking.failing,
-        settled=tuple(one for of_state in settled for one in of_state),
+        versions=versions([reference.oracle for reference in run.references]),
+        failing=run.ranking.failing,
+        adjudicated=tuple(one for of_state in adjudicated for one in of_state),
     )
 
 

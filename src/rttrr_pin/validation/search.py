@@ -16,7 +16,7 @@ from scipy.optimize import differential_evolution
 from rttrr_pin.core.inputs import whole_number
 from rttrr_pin.core.wrench import Wrench
 from rttrr_pin.robot import Robot
-from rttrr_pin.validation.comparison_run import Contest, Oracles
+from rttrr_pin.validation.comparison_run import ComparisonRun, Oracles
 from rttrr_pin.validation.states import States
 
 Array = NDArray[np.float64]
@@ -29,7 +29,7 @@ FEWEST, MOST = 2 * POPULATION, 10**9
 
 
 @dataclass(frozen=True, slots=True)
-class Found:
+class WorstCase:
     """The worst case that a search found.
 
     Attributes:
@@ -65,7 +65,7 @@ def search(
     payload: Wrench | str | None = None,
     oracle: Oracles = "pinocchio",
     progress: Callable[[int], None] = lambda done: None,
-) -> Found:
+) -> WorstCase:
     """Look for the state at which ours and an oracle differ most, as a share of what rounding can explain.
 
     Args:
@@ -84,8 +84,8 @@ def search(
         OracleError: as in `validate`.
     """
     whole_number("evaluations", evaluations, FEWEST, MOST, "10^9")
-    contest = Contest.of(robot, seed, "uniform", payload, oracle, evaluations)
-    sampler = contest.sampler
+    run = ComparisonRun.of(robot, seed, "uniform", payload, oracle, evaluations)
+    sampler = run.sampler
     generations = evaluations // POPULATION - 1
     rng = np.random.default_rng(seed)
     start = rng.random((POPULATION, sampler.numbers))
@@ -94,7 +94,7 @@ def search(
     def closeness(columns: Array) -> Array:
         nonlocal done
         unit = np.atleast_2d(columns.T)
-        worst: Array = np.max([gap.share for gap in contest.gaps(sampler.made_of(unit))], axis=0)
+        worst: Array = np.max([gap.share for gap in run.gaps(sampler.made_of(unit))], axis=0)
         done += len(unit)
         progress(min(done, evaluations))
         return -worst
@@ -113,7 +113,7 @@ def search(
         rng=rng,
     )
     state = sampler.made_of(np.atleast_2d(found.x))
-    gaps = contest.gaps(state)
+    gaps = run.gaps(state)
     k = int(np.argmax([gap.share[0] for gap in gaps]))
-    opponent, row = contest.rows[k]
-    return Found(row.quantity, row.at, opponent.oracle.name, float(gaps[k].share[0]), random, done, seed, state)
+    reference, row = run.rows[k]
+    return WorstCase(row.quantity, row.at, reference.oracle.name, float(gaps[k].share[0]), random, done, seed, state)

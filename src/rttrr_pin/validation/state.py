@@ -6,15 +6,15 @@ from dataclasses import dataclass
 
 from rttrr_pin.core.inputs import whole_number
 from rttrr_pin.core.wrench import LinkWrenches, Wrench
-from rttrr_pin.exact import Settlement
+from rttrr_pin.exact import Adjudication
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.compare import Gap, Row
-from rttrr_pin.validation.comparison_run import Contest, Oracles
+from rttrr_pin.validation.comparison_run import ComparisonRun, Oracles
 from rttrr_pin.validation.states import LAST_STATE, States
 
 
 @dataclass(frozen=True, slots=True)
-class View:
+class StateComparison:
     """What one oracle says of the state.
 
     Attributes:
@@ -22,14 +22,14 @@ class View:
         theirs: its result, a batch of one.
         rows: labels of the gaps.
         gaps: how far apart, one for each row.
-        settled: who is right, by balls.
+        adjudicated: who is right, by balls.
     """
 
     oracle: str
     theirs: LinkWrenches
     rows: tuple[Row, ...]
     gaps: tuple[Gap, ...]
-    settled: Settlement
+    adjudicated: Adjudication
 
     @property
     def agrees(self) -> bool:
@@ -61,7 +61,7 @@ class StateReport:
     states: States
     ours: LinkWrenches
     bound: LinkWrenches
-    views: tuple[View, ...]
+    views: tuple[StateComparison, ...]
 
     @property
     def agrees(self) -> bool:
@@ -89,16 +89,16 @@ class StateReport:
         return self.views[0].gaps
 
     @property
-    def settled(self) -> Settlement:
+    def adjudicated(self) -> Adjudication:
         """Who is right, ours or the first oracle, by balls."""
-        return self.views[0].settled
+        return self.views[0].adjudicated
 
 
 def compare_state(
     robot: Robot,
     index: int,
     seed: int = 0,
-    family: str = "uniform",
+    sampling: str = "uniform",
     payload: Wrench | str | None = None,
     oracle: Oracles = "pinocchio",
     states: int = 10_000,
@@ -110,19 +110,19 @@ def compare_state(
         OracleError: as in `validate`.
     """
     whole_number("state", index, 0, LAST_STATE, "10^15")
-    contest = Contest.of(robot, seed, family, payload, oracle, states)
-    drawn = contest.sampler.draw(index, 1)
-    sides = contest.sides(drawn)
+    run = ComparisonRun.of(robot, seed, sampling, payload, oracle, states)
+    drawn = run.sampler.draw(index, 1)
+    sides = run.sides(drawn)
     views = [
-        View(
-            opponent.label,
+        StateComparison(
+            reference.label,
             theirs.wrenches,
-            tuple(opponent.comparison.rows),
-            tuple(opponent.comparison.gaps(sides.ours, theirs, sides.bound)),
-            settled,
+            tuple(reference.comparison.rows),
+            tuple(reference.comparison.gaps(sides.ours, theirs, sides.bound)),
+            adjudicated,
         )
-        for opponent, theirs, settled in zip(
-            contest.opponents, sides.theirs, contest.settled_of(drawn, sides), strict=True
+        for reference, theirs, adjudicated in zip(
+            run.references, sides.theirs, run.adjudicate_results(drawn, sides), strict=True
         )
     ]
     names = robot.model.q_names, robot.model.v_names

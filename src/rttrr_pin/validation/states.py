@@ -89,7 +89,7 @@ class Ranges:
 
 
 Triple = tuple[Array, Array, Array]
-Family = Callable[[Array, Indices, Ranges], Triple]
+Sampling = Callable[[Array, Indices, Ranges], Triple]
 
 
 def _uniform(unit: Array, k: Indices, ranges: Ranges) -> Triple:
@@ -131,12 +131,12 @@ def _large_velocities(unit: Array, k: Indices, ranges: Ranges) -> Triple:
 def _mixed(unit: Array, k: Indices, ranges: Ranges) -> Triple:
     """State k from the family k mod 5."""
     turn = k % 5
-    triples = [family(unit, k // 5, ranges) for family in list(FAMILIES.values())[:5]]
+    triples = [sampling(unit, k // 5, ranges) for sampling in list(SAMPLINGS.values())[:5]]
     q, v, a = (np.choose(turn[:, None], parts) for parts in zip(*triples, strict=True))
     return q, v, a
 
 
-FAMILIES: dict[str, Family] = {
+SAMPLINGS: dict[str, Sampling] = {
     "uniform": _uniform,
     "corners": _corners,
     "zeros": _zeros,
@@ -152,16 +152,18 @@ class Sampler:
 
     Attributes:
         model: the robot.
-        family: one of `FAMILIES`.
+        sampling: one of `SAMPLINGS`.
         seed: from 0 to 2^128 - 1.
     """
 
-    def __init__(self, model: Model, family: str = "uniform", seed: int = 0, payload: Load | str | None = None) -> None:
+    def __init__(
+        self, model: Model, sampling: str = "uniform", seed: int = 0, payload: Load | str | None = None
+    ) -> None:
         """Prepare to draw.
 
         Args:
             model: the robot.
-            family: one of `FAMILIES`.
+            sampling: one of `SAMPLINGS`.
             seed: from 0 to 2^128 - 1.
             payload: the same load in every state; or the name of a link, which gets a random one, in its own axes.
 
@@ -169,10 +171,10 @@ class Sampler:
             UnknownNameError: there is no such family or link.
             InputError: the seed is out of range.
         """
-        if not isinstance(family, str) or family not in FAMILIES:
-            raise UnknownNameError("family of states", family, FAMILIES)
+        if not isinstance(sampling, str) or sampling not in SAMPLINGS:
+            raise UnknownNameError("family of states", sampling, SAMPLINGS)
         seed = whole_number("seed", seed, 0, 2**128 - 1, "2^128 - 1")
-        self.model, self.family, self.seed = model, family, seed
+        self.model, self.sampling, self.seed = model, sampling, seed
         self._payload = payload if not isinstance(payload, str) else model.link_index(payload)
         self._ranges = Ranges.of(model)
 
@@ -192,7 +194,7 @@ class Sampler:
         """The states that numbers in [0, 1] stand for, (N, `numbers`) or wider, counted from `first`."""
         nv = self.model.nv
         k = first + np.arange(len(unit), dtype=np.int64)
-        q, v, a = FAMILIES[self.family](unit[:, : 3 * nv], k, self._ranges)
+        q, v, a = SAMPLINGS[self.sampling](unit[:, : 3 * nv], k, self._ranges)
         return States(first, self._coordinates(q), v, a, self._loads(2 * unit[:, 3 * nv : 3 * nv + 6] - 1))
 
     def _coordinates(self, q: Array) -> Array:

@@ -13,7 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.compile.call_program import Schedule
+from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.program import Field, Program
 from rttrr_pin.errors import InputError, UnknownNameError
 
@@ -54,7 +54,7 @@ class Emitter(Protocol):
     calls: bool
     fuses: bool
 
-    def emit(self, program: Program | Schedule) -> bytes:
+    def emit(self, program: Program | CallProgram) -> bytes:
         """Translate a program."""
         ...
 

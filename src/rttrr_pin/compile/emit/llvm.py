@@ -17,7 +17,7 @@ import llvmlite.binding as llvm
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.compile.call_program import Schedule
+from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.emit import Array, Task
 from rttrr_pin.compile.emit.fastcall import python_call, python_function
 from rttrr_pin.compile.emit.llvm_body import body
@@ -87,9 +87,9 @@ class LlvmEmitter:
             cpu=self.processor, features=self.features, opt=OPTIMISATION, jit=True, reloc="pic", codemodel="jitdefault"
         )
 
-    def layout(self, program: Program | Schedule) -> Layout:
+    def layout(self, program: Program | CallProgram) -> Layout:
         """How blocks of this program lie in memory: as many states as keep its columns in the nearest cache."""
-        if isinstance(program, Schedule):
+        if isinstance(program, CallProgram):
             size, width = SECOND_LEVEL, program.columns
         else:
             size, width = FIRST_LEVEL, program.width_in + program.width_out
@@ -97,12 +97,12 @@ class LlvmEmitter:
         block = min(BLOCK, max(w, size // (8 * max(width, 1)) // w * w))
         return Layout(w, block, block + w)
 
-    def assembly(self, program: Program | Schedule) -> llvm.ModuleRef:
+    def assembly(self, program: Program | CallProgram) -> llvm.ModuleRef:
         """The program as LLVM's assembly."""
         from rttrr_pin.compile.emit.llvm_driver import driver  # llvmlite's builder, not needed for what is on disk
 
         layout = self.layout(program)
-        if isinstance(program, Schedule):
+        if isinstance(program, CallProgram):
             text, between = calls(program, layout), program.between
         else:
             text, between = body(program, layout)
@@ -115,7 +115,7 @@ class LlvmEmitter:
         module.verify()
         return module
 
-    def emit(self, program: Program | Schedule) -> bytes:
+    def emit(self, program: Program | CallProgram) -> bytes:
         """Object code."""
         code: bytes = self._machine().emit_object(self.assembly(program))
         return code

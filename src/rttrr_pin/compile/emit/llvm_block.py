@@ -13,7 +13,7 @@ from itertools import groupby
 
 from llvmlite import ir
 
-from rttrr_pin.compile.call_program import Schedule
+from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.emit.llvm_columns import F32, F64, I64, LINE, PTR, Writer, number
 from rttrr_pin.compile.emit.llvm_vectors import Layout
 from rttrr_pin.compile.program import Field, Program
@@ -54,7 +54,7 @@ class Block:
         unsound: tells whether there is NaN or infinity in columns.
     """
 
-    program: Program | Schedule
+    program: Program | CallProgram
     layout: Layout
     between: int
     body: ir.Function

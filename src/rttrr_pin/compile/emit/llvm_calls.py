@@ -13,7 +13,7 @@ import struct
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from rttrr_pin.compile.call_program import Schedule, Step
+from rttrr_pin.compile.call_program import CallProgram, Step
 from rttrr_pin.compile.emit.llvm_vectors import Layout, Lines, VectorCode, declarations, loop
 from rttrr_pin.compile.expression import LEAVES
 
@@ -25,16 +25,16 @@ FILL = "define void @fill(ptr %out, i64 %m) {\n  ret void\n}\n"
 """What no state changes is written by calls, as all else is."""
 
 
-def calls(schedule: Schedule, layout: Layout) -> str:
+def calls(call_program: CallProgram, layout: Layout) -> str:
     """The schedule's functions and tables."""
-    steps = (_step(step, layout, k) for k, step in enumerate(schedule.steps))
-    return "\n".join([*declarations(layout.lanes), *_tables(schedule, layout), *steps, _body(schedule), FILL])
+    steps = (_step(step, layout, k) for k, step in enumerate(call_program.steps))
+    return "\n".join([*declarations(layout.lanes), *_tables(call_program, layout), *steps, _body(call_program), FILL])
 
 
-def _tables(schedule: Schedule, layout: Layout) -> Iterator[str]:
+def _tables(call_program: CallProgram, layout: Layout) -> Iterator[str]:
     """Rows and numbers as bytes, which take no time to read."""
-    rows = [x for call in schedule.calls for x in (call.step, *_offsets((*call.columns, *call.results), layout))]
-    numbers = [x for call in schedule.calls for x in call.numbers]
+    rows = [x for call in call_program.calls for x in (call.step, *_offsets((*call.columns, *call.results), layout))]
+    numbers = [x for call in call_program.calls for x in call.numbers]
     yield _constant("rows", struct.pack(f"<{len(rows) + 1}I", *rows, END))
     yield _constant("numbers", struct.pack(f"<{len(numbers)}d", *numbers))
 
@@ -89,12 +89,12 @@ def _step(step: Step, layout: Layout, k: int) -> str:
     return loop(f"step_{k}", "ptr %in, ptr %row, ptr %numbers", lines, code.label)
 
 
-def _body(schedule: Schedule) -> str:
+def _body(call_program: CallProgram) -> str:
     """The loop over the rows of the table."""
-    kinds = range(len(schedule.steps))
+    kinds = range(len(call_program.steps))
     cases = " ".join(f"i32 {k}, label %case_{k}" for k in kinds)
     parts = []
-    for k, step in enumerate(schedule.steps):
+    for k, step in enumerate(call_program.steps):
         entries = 1 + len(step.columns) + len(step.program.results)
         parts.append(f"""case_{k}:
   %columns_{k} = getelementptr i32, ptr %row, i64 1

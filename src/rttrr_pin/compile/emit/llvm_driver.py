@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from llvmlite import ir
 
-from rttrr_pin.compile.call_program import Schedule
+from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.emit.llvm_block import Array, Block, compute
 from rttrr_pin.compile.emit.llvm_columns import F32, F64, I64, PTR, function, number, pack, unpack, unsound
 from rttrr_pin.compile.emit.llvm_python import python_entries
@@ -21,7 +21,7 @@ RECORD = 5
 """Numbers that describe an array."""
 
 
-def driver(program: Program | Schedule, layout: Layout, between: int) -> str:
+def driver(program: Program | CallProgram, layout: Layout, between: int) -> str:
     """The functions around the program's body, as LLVM assembly.
 
     Args:

@@ -65,9 +65,11 @@ def _one(module: ir.Module, block: Block, context: ir.GlobalVariable, incref: ir
     return made
 
 
-def _call(module: ir.Module, block: Block, context: ir.GlobalVariable, known: tuple[ir.Function, ir.Function]) -> None:
+def _call(
+    module: ir.Module, block: Block, context: ir.GlobalVariable, constants: tuple[ir.Function, ir.Function]
+) -> None:
     """The function call: f(q, v, a, out=out) by `one`, everything else by the general Python function."""
-    one, incref = known
+    one, incref = constants
     find, size, general_call, decref = (
         ir.Function(module, ir.FunctionType(result, arguments), name)
         for name, result, arguments in (

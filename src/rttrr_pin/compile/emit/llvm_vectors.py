@@ -161,9 +161,9 @@ class VectorCode:
 
     def get(self, x: int) -> str:
         """The vector of a node; read from memory where this segment does not compute it."""
-        known = self.value.get(x)
-        if known is not None:
-            return known
+        constants = self.value.get(x)
+        if constants is not None:
+            return constants
         graph = self.program.graph
         if graph.op[x] is Op.CONSTANT:
             return self.lines.splat(graph.value[x])

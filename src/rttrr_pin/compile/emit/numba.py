@@ -221,8 +221,8 @@ def run(
     stop: int,
 ) -> bool:
     """Some states of a batch, block by block; tells whether a number is not finite."""
-    known = inputs[:, 3].sum() + outputs[:, 3].sum()
-    c = np.empty((known + between) * PITCH)
+    constants = inputs[:, 3].sum() + outputs[:, 3].sum()
+    c = np.empty((constants + between) * PITCH)
     bad = False
     for first in range(start, stop, BLOCK):
         m = min(BLOCK, stop - first)
@@ -234,7 +234,7 @@ def run(
                 call(address, c.ctypes.data)
             else:
                 sincos(c, angle, sine, cosine)
-        bad |= unsound(c, known)
+        bad |= unsound(c, constants)
         for k in range(len(outputs)):
             scatter(outputs[k], first, m, c)
     return bad
@@ -303,15 +303,15 @@ class NumbaEmitter:
         plan = Plan.of(program)
         lines = [line for k in range(len(plan.parts)) for line in _segment(program, plan, k)]
         steps: list[tuple[int, ...]] = []
-        known = program.width_in + len(program.results)
-        spare = max((known, *plan.column.values())) + 1  # takes the sine where the cosine alone is needed
+        constants = program.width_in + len(program.results)
+        spare = max((constants, *plan.column.values())) + 1  # takes the sine where the cosine alone is needed
         where = {(program.graph.op[x], program.graph.args[x]): at for x, at in plan.column.items()}
         for k, angles in enumerate(plan.angles):
             steps.append((k,))
             for x in angles:
                 s, c = (where.get((op, (x,)), spare) for op in (Op.SIN, Op.COS))
                 steps.append((plan.column[x], s, c))
-        lines += [f"STEPS = {steps!r}", f"BETWEEN = {spare + 1 - known}"]
+        lines += [f"STEPS = {steps!r}", f"BETWEEN = {spare + 1 - constants}"]
         return "\n".join(lines).encode()
 
     def load(self, code: bytes, inputs: Sequence[Field], outputs: Sequence[Field]) -> NumbaExecutable:

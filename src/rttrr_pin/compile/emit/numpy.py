@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.compile.call_program import Schedule
+from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.emit import Array, Task
 from rttrr_pin.compile.expression import LEAVES, Op
 from rttrr_pin.compile.program import Field, Program
@@ -39,9 +39,9 @@ class NumpyEmitter:
     calls = True
     fuses = False
 
-    def emit(self, program: Program | Schedule) -> bytes:
+    def emit(self, program: Program | CallProgram) -> bytes:
         """Python source of a function from columns of inputs to columns of outputs."""
-        lines = _of_calls(program) if isinstance(program, Schedule) else _straight("program", program)
+        lines = _of_calls(program) if isinstance(program, CallProgram) else _straight("program", program)
         return "\n".join(lines).encode()
 
     def load(self, code: bytes, inputs: Sequence[Field], outputs: Sequence[Field]) -> NumpyExecutable:
@@ -74,17 +74,17 @@ def _straight(function: str, program: Program) -> Iterator[str]:
     yield f"    return [{', '.join(name(x) for x in program.results)}]"
 
 
-def _of_calls(schedule: Schedule) -> Iterator[str]:
+def _of_calls(call_program: CallProgram) -> Iterator[str]:
     """A function for each step, the calls as data, and a function that goes through them."""
-    for k, step in enumerate(schedule.steps):
+    for k, step in enumerate(call_program.steps):
         yield from _straight(f"step_{k}", step.program)
-    places = [(step.columns, step.numbers) for step in schedule.steps]
-    first, last = schedule.width_in, schedule.width_in + schedule.width_out
+    places = [(step.columns, step.numbers) for step in call_program.steps]
+    first, last = call_program.width_in, call_program.width_in + call_program.width_out
     yield f"steps = [{', '.join(f'step_{k}' for k in range(len(places)))}]"
     yield f"places = {places!r}"
-    yield f"calls = {[(call.step, call.columns, call.numbers, call.results) for call in schedule.calls]!r}"
+    yield f"calls = {[(call.step, call.columns, call.numbers, call.results) for call in call_program.calls]!r}"
     yield "def program(x):"
-    yield f"    memory = x + [None] * {schedule.columns - first}"
+    yield f"    memory = x + [None] * {call_program.columns - first}"
     yield "    for k, columns, numbers, results in calls:"
     yield "        given = dict(zip(places[k][1], numbers))"
     yield "        given.update((place, memory[column]) for place, column in zip(places[k][0], columns))"

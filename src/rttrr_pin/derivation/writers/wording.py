@@ -73,7 +73,7 @@ def names_of_links(model: Model) -> str:
 
 
 def _frictional(model: Model) -> bool:
-    return any(joint.drive.damping or joint.drive.friction for joint in model.joints)
+    return any(joint.effects.damping or joint.effects.friction for joint in model.joints)
 
 
 def _planar(model: Model) -> bool:
