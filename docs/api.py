@@ -38,12 +38,12 @@ def page() -> str:
     lines = [
         "# API reference",
         "",
-        "Written by `python docs/api.py` from the docstrings. Frames, signs, units and shapes: [notation.md](notation.md).",
+        "Written by `python docs/api.py` from the docstrings. Frames, signs, units: [notation.md](notation.md).",
     ]
     seen: set[int] = set()
     for name in PACKAGES:
         package = import_module(name)
-        entries = [(key, getattr(package, key)) for key in package.__all__ if key != "__version__"]
+        entries = [(key, getattr(package, key)) for key in getattr(package, "__all__", ()) if key != "__version__"]
         fresh = [(key, value) for key, value in entries if id(value) not in seen]
         seen |= {id(value) for _, value in fresh}
         lines += ["", f"## `{name}`", "", summary(package)]

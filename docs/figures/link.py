@@ -1,7 +1,7 @@
 """Draws docs/figures/link.svg: link i with what acts on it, in the letters of the recursion.
 
-    python docs/figures/link.py            writes the figure
-    python docs/figures/link.py --check    exits 1 if the committed figure is another
+python docs/figures/link.py            writes the figure
+python docs/figures/link.py --check    exits 1 if the committed figure is another
 """
 
 from __future__ import annotations
@@ -115,8 +115,8 @@ def figure() -> str:
         label("across-label", tx + 96, ty - 56, "− f", "i+1"),
         turn("across", TIP, 38, 325, 440),
         label("across-label", tx + 44, ty + 26, "− n", "i+1"),
-        note(16, 285, "F, N: mass times acceleration of the centre of mass, and the moment about it (gravity included)"),
-        note(16, 305, "f, n: what link i−1 exerts on link i across joint i, at the origin of {i}; τ: their part along the axis"),
+        note(16, 285, "F, N: mass times acceleration of the centre of mass, and the moment about it"),
+        note(16, 305, "f, n: what link i−1 exerts on link i, at the origin of {i}; τ: their part along the axis"),
     ]
     inside = "\n".join(f"  {part}" for part in parts)
     title = "<title>Link i with F, N, f, n and tau</title>"

@@ -12,8 +12,8 @@ from tests.laws.test_laws import BASES, BUNDLED, driven, put_in
 import rttrr_pin
 from rttrr_pin import Robot
 from rttrr_pin.cli import main
+from rttrr_pin.core import dynamics as arithmetic
 from rttrr_pin.core import newton_euler
-from rttrr_pin.core import scalars as arithmetic
 from rttrr_pin.core.joint import Joint, JointEffects, JointType
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.exact.intervals import INTERVAL, interval, precision

@@ -14,8 +14,8 @@ import pytest
 import rttrr_pin
 from rttrr_pin import Robot, Wrench
 from rttrr_pin.cli import main
+from rttrr_pin.core import dynamics as arithmetic
 from rttrr_pin.core import joint_motion, newton_euler
-from rttrr_pin.core import scalars as arithmetic
 from rttrr_pin.core.algebra import ZERO, Vector
 from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.core.model import Link, Model

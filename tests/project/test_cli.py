@@ -86,9 +86,9 @@ def test_the_same_words_give_the_same_bytes(capsys: pytest.CaptureFixture[str]) 
 
 
 def test_gravity_is_passed_on(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["validate", "--state", "0", "--gravity", "0,0,0", "--family", "zeros", "--json", "-"]) == 0
+    assert main(["validate", "--state", "0", "--gravity", "0,0,0", "--sampling", "zeros", "--json", "-"]) == 0
     still = json.loads(capsys.readouterr().out)
-    assert main(["validate", "--state", "0", "--family", "zeros", "--json", "-"]) == 0
+    assert main(["validate", "--state", "0", "--sampling", "zeros", "--json", "-"]) == 0
     heavy = json.loads(capsys.readouterr().out)
     assert heavy["q"] == still["q"]
     assert heavy["ours"]["tau"] != still["ours"]["tau"]
@@ -121,7 +121,7 @@ UNUSABLE = {
     "no-such-option": (["validate", "--sed", "1"], "No such option: --sed"),
     "states-word": (["validate", "--states", "many"], "--states"),
     "no-states": (["validate", "--states", "0"], "states is 0"),
-    "sampling": (["validate", "--family", "corner"], "did you mean corners"),
+    "sampling": (["validate", "--sampling", "corner"], "did you mean corners"),
     "payload": (["validate", "--payload", "1,2,3"], "expected 6 numbers"),
     "payload-word": (["validate", "--payload", "a,b,c,d,e,f"], "expected 6 numbers"),
     "payload-link": (["validate", "--payload", "1,2,3,4,5,6", "--payload-link", "hand"], "no link is called 'hand'"),
@@ -158,7 +158,7 @@ def test_a_damaged_file_exits_2_with_its_line(tmp_path: Path, capsys: pytest.Cap
 
 
 def test_disagreement_exits_1(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    from test_validate import Liar
+    from tests.validation.test_validate import Liar
 
     def spoil(result: rttrr_pin.LinkWrenches, q: object) -> None:
         result.n[:, 2] += 1.0

@@ -67,8 +67,8 @@ def test_bundled_robots_are_found_in_a_checkout_and_in_a_wheel(
 ) -> None:
     in_checkout = sources.bundled()
     assert set(in_checkout) == {path.stem for path in (repository / "urdf").glob("*.urdf")}
-    (tmp_path / "urdf").mkdir()
-    (tmp_path / "urdf" / "mine.urdf").write_text(CHAIN)
+    (tmp_path / "robots").mkdir()
+    (tmp_path / "robots" / "mine.urdf").write_text(CHAIN)
     monkeypatch.setattr(sources, "__file__", str(tmp_path / "model" / "sources.py"))
     monkeypatch.setattr(sources, "bundled", sources.bundled.__wrapped__)
     assert set(sources.bundled()) == {"mine"}

@@ -39,7 +39,7 @@ def laws_data(result: LawReport) -> dict[str, Any]:
     """The outcome: per law the worst share and where, and the verdict."""
     return {
         "n_states": result.n_states,
-        "family": result.sampling,
+        "sampling": result.sampling,
         "seed": result.seed,
         "payload": result.payload,
         "gate": LAW_GATE,

@@ -120,7 +120,7 @@ def validate(
     loaded = load(robot, **loading)
     chosen: dict[str, Any] = {
         "seed": seed,
-        "family": sampling,
+        "sampling": sampling,
         "payload": _payload(payload, payload_link, payload_axes),
         "oracle": oracles,
     }
@@ -144,7 +144,7 @@ def validate(
     again = {
         "--states": states if states != STATES else None,
         "--seed": seed or None,
-        "--family": sampling if sampling != "uniform" else None,
+        "--sampling": sampling if sampling != "uniform" else None,
         "--payload": payload,
         "--payload-link": payload_link,
         "--payload-axes": payload_axes if payload_axes != "link" else None,
@@ -173,7 +173,7 @@ def _laws(robot: Any, states: int, chosen: Mapping[str, Any], quiet: bool) -> An
     """The laws on the first of the states; a random payload is what they take by themselves."""
     payload = chosen["payload"] if isinstance(chosen["payload"], Wrench) else None
     with progress(states, quiet) as advance:
-        return check_laws(robot, states, chosen["seed"], chosen["family"], payload, progress=advance)
+        return check_laws(robot, states, chosen["seed"], chosen["sampling"], payload, progress=advance)
 
 
 def _several(robot: str) -> dict[str, Path]:

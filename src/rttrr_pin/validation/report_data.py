@@ -32,7 +32,7 @@ def validation_data(result: Validation) -> dict[str, Any]:
         "versions": result.versions,
         "seed": result.seed,
         "n_states": result.n_states,
-        "family": result.sampling,
+        "sampling": result.sampling,
         "payload": result.payload,
         "gate": GATE,
         **apart,
