@@ -37,6 +37,21 @@ class Load:
         return Load(self.link, f, n, self.in_base)
 
 
+@dataclass(frozen=True, slots=True)
+class RandomPayload:
+    """A payload that is drawn anew for each state, uniformly between minus and plus these bounds along each axis.
+
+    Attributes:
+        link: the link that it acts at; None: the tool, that is the robot's only last link.
+        force: half range of each component of the force [N].
+        moment: half range of each component of the moment about the origin of the link's frame [N m].
+    """
+
+    link: str | None = None
+    force: float = 50.0
+    moment: float = 10.0
+
+
 def payloads_of(loads: Sequence[Load], arithmetic: Arithmetic) -> list[Payload]:
     """The payloads of a batch in scalars."""
     return [
