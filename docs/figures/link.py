@@ -87,7 +87,7 @@ def figure() -> str:
     (ox, oy), (cx, cy), (tx, ty) = ORIGIN, CENTRE, TIP
     body = (
         f'<path class="body" d="M{ox - 17} {oy - 22} C{ox + 60} {oy - 82} {cx + 40} {cy - 66} {tx} {ty - 27} '
-        f'A27 27 0 0 1 {tx + 8} {ty + 26} C{cx + 90} {cy + 62} {ox + 130} {oy + 46} {ox + 2} {oy + 28} '
+        f"A27 27 0 0 1 {tx + 8} {ty + 26} C{cx + 90} {cy + 62} {ox + 130} {oy + 46} {ox + 2} {oy + 28} "
         f'A28 28 0 0 1 {ox - 17} {oy - 22} Z"/>'
     )
     parts = [

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import RESULTS, batch_shape, blocks, check_overflow, empty_wrenches, fill, flat
 from rttrr_pin.core.dynamics import bodies, evaluate
 from rttrr_pin.core.inputs import Coordinates, coordinates, finite, real, vectors
@@ -26,9 +26,6 @@ if TYPE_CHECKING:
     from rttrr_pin.exact.enclosures import Enclosures
     from rttrr_pin.exact.parameters import Numbers
     from rttrr_pin.inspection import Inspection
-
-Array = NDArray[np.float64]
-
 
 KERNEL_FROM = 8192
 """States in a batch from which compiling, or reading what was compiled before, costs less than it saves."""

@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.errors import InputError, ShapeError
-
-Array = NDArray[np.float64]
 
 
 def readable(x: Any, width: int) -> bool:

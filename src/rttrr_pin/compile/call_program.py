@@ -11,12 +11,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-from numpy.typing import NDArray
-
 from rttrr_pin.compile.program import Field, Program, Widths, inputs_of
-
-Array = NDArray[np.float64]
+from rttrr_pin.core.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,14 +21,13 @@ from rttrr_pin.compile.program import Field, Program, Widths
 from rttrr_pin.compile.quantities import QUANTITIES
 from rttrr_pin.compile.shortcut import One, shortcut
 from rttrr_pin.compile.trace import PayloadSlot, fields, outputs_of
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import common_shape
 from rttrr_pin.core.inputs import Coordinates, check_quaternions, coordinates, finite
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.errors import InputError, NumberError, UnknownNameError
-
-Array = NDArray[np.float64]
 
 LoadOf = Callable[[Any], list[Load]]
 """What a user passes as payload, as loads of links."""

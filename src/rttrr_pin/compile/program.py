@@ -8,11 +8,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rttrr_pin.compile.expression import LEAVES, Graph, Op
-
-Array = NDArray[np.float64]
+from rttrr_pin.core.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)

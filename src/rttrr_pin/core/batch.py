@@ -5,16 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rttrr_pin.core.algebra import Scalar, Vector
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dynamics import Result
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import LINK_QUANTITIES, QUANTITIES, LinkWrenches
 from rttrr_pin.errors import NumberError, ShapeError
-
-Array = NDArray[np.float64]
 
 RESULTS = (*QUANTITIES, "tau_joint")
 """The arrays of `LinkWrenches`."""

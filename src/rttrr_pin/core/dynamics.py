@@ -11,17 +11,15 @@ from functools import lru_cache
 from itertools import islice
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rttrr_pin.core.algebra import Matrix, Scalar, Vector
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joint import Joint, JointEffects, Mimic
 from rttrr_pin.core.joint_motion import Body, JointState
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.newton_euler import Payload, newton_euler
 from rttrr_pin.core.payload import Load, payloads_of
 from rttrr_pin.core.scalars import AXIS_ERROR, ROTATION_ERROR, UNIT_ROUNDOFF, Arithmetic, NumberOf, columns
-
-Array = NDArray[np.float64]
 
 
 def bodies(model: Model, arithmetic: Arithmetic) -> list[Body]:

@@ -8,10 +8,9 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joint import Joint, JointType
 from rttrr_pin.errors import InputError, MissingJointError, NumberError, ShapeError, UnknownNameError
-
-Array = NDArray[np.float64]
 
 Coordinates: TypeAlias = ArrayLike | Mapping[str, ArrayLike]
 """An array with the joints on its last axis, or a dict with one entry for each joint."""

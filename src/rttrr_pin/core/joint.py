@@ -7,11 +7,9 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.errors import InputError
-
-Array = NDArray[np.float64]
 
 
 class JointType(enum.StrEnum):

@@ -13,7 +13,8 @@ from functools import cached_property
 
 import numpy as np
 
-from rttrr_pin.core.joint import Array, Joint, JointEffects, JointType, frozen
+from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.joint import Joint, JointEffects, JointType, frozen
 from rttrr_pin.errors import InputError, UnknownNameError
 
 STANDARD_GRAVITY = (0.0, 0.0, -9.81)

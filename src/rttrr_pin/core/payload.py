@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rttrr_pin.core.algebra import Vector
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.newton_euler import Payload
 from rttrr_pin.core.scalars import Arithmetic, columns
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,13 +11,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rttrr_pin.core.algebra import Scalar
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joint_motion import SinCos
 from rttrr_pin.core.newton_euler import Call, Keep
-
-Array = NDArray[np.float64]
 
 UNIT_ROUNDOFF = 2.0**-53
 """u: the relative error of one correctly rounded float64 operation; eps is 2 u."""

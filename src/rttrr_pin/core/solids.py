@@ -13,11 +13,10 @@ from math import cos, inf, pi, sin
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.errors import InputError
 
-Floats = NDArray[np.float64]
 Triple = tuple[float, float, float]
 
 
@@ -28,7 +27,7 @@ class Solid(Protocol):
     def volume(self) -> float:
         """Volume [m^3]."""
 
-    def specific_inertia(self) -> Floats:
+    def specific_inertia(self) -> Array:
         """Inertia about the centre divided by the mass, (3, 3) [m^2], in the solid's own axes."""
 
 
@@ -51,7 +50,7 @@ class Box:
         x, y, z = self.size
         return x * y * z
 
-    def specific_inertia(self) -> Floats:
+    def specific_inertia(self) -> Array:
         """I_xx / m = (y^2 + z^2) / 12, and so on in a circle (Beer and Johnston: rectangular prism)."""
         x, y, z = self.size
         return np.diag([y * y + z * z, z * z + x * x, x * x + y * y]) / 12.0
@@ -77,7 +76,7 @@ class Cylinder:
         """Volume pi r^2 l [m^3]."""
         return pi * self.radius**2 * self.length
 
-    def specific_inertia(self) -> Floats:
+    def specific_inertia(self) -> Array:
         """I_zz / m = r^2 / 2 and I_xx / m = I_yy / m = (3 r^2 + l^2) / 12 (Beer and Johnston: circular cylinder)."""
         across = (3.0 * self.radius**2 + self.length**2) / 12.0
         return np.diag([across, across, self.radius**2 / 2.0])
@@ -101,7 +100,7 @@ class Sphere:
         """Volume 4/3 pi r^3 [m^3]."""
         return 4.0 / 3.0 * pi * self.radius**3
 
-    def specific_inertia(self) -> Floats:
+    def specific_inertia(self) -> Array:
         """I / m = 2/5 r^2 about every axis (Beer and Johnston: sphere)."""
         return np.eye(3) * (0.4 * self.radius**2)
 
@@ -117,8 +116,8 @@ class RigidBody:
     """
 
     mass: float
-    com: Floats
-    inertia: Floats
+    com: Array
+    inertia: Array
 
     @classmethod
     def of(cls, solid: Solid, density: float) -> RigidBody:
@@ -186,7 +185,7 @@ class Part:
         return RigidBody.of(self.solid, self.material.density).placed(self.xyz, self.rpy)
 
 
-def rotation(rpy: Triple) -> Floats:
+def rotation(rpy: Triple) -> Array:
     """The rotation matrix of URDF's roll, pitch, yaw: R = R_z(yaw) R_y(pitch) R_x(roll).
 
     Args:

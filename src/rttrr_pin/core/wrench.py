@@ -6,12 +6,10 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.errors import InputError, ShapeError, UnknownNameError
-
-Array = NDArray[np.float64]
 
 LINK_QUANTITIES = ("F", "N", "f", "n")
 """One vector for each link."""

@@ -10,13 +10,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.wrench import LINK_QUANTITIES, LinkWrenches
 from rttrr_pin.exact.enclosures import Enclosures
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,7 @@ import numpy as np
 from flint import arb
 from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import batch_shape, check_overflow, flat
 from rttrr_pin.core.dynamics import bodies
 from rttrr_pin.core.model import Model
@@ -20,8 +21,6 @@ from rttrr_pin.errors import InputError
 from rttrr_pin.exact.intervals import INTERVAL, interval, precision
 from rttrr_pin.exact.parameters import Numbers, exact_parameters
 from rttrr_pin.exact.recursion import Slots, results_of
-
-Array = NDArray[np.float64]
 
 PRECISIONS = (128, 256, 512, 1024, 2048, 4096)
 """Bits of the balls, one after the other. At 64 bits, which take as long, one state in two is not tight."""

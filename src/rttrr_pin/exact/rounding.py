@@ -19,9 +19,9 @@ from dataclasses import dataclass
 from typing import Any, TypeAlias
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rttrr_pin.core.algebra import Scalar, Vector
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dynamics import dynamics
 from rttrr_pin.core.joint import JointType
 from rttrr_pin.core.model import Model
@@ -29,7 +29,6 @@ from rttrr_pin.core.payload import Load, payloads_of
 from rttrr_pin.core.scalars import SINE_ULPS, SLACK, UNIT_ROUNDOFF, Arithmetic, columns
 from rttrr_pin.core.wrench import LINK_QUANTITIES, LinkWrenches
 
-Array = NDArray[np.float64]
 Real: TypeAlias = Any  # float | Array: what NumPy's stubs cannot combine without casts
 
 PLAIN = (int, float)

@@ -10,15 +10,11 @@ from dataclasses import dataclass
 from importlib import import_module
 from typing import Protocol
 
-import numpy as np
-from numpy.typing import NDArray
-
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import LinkWrenches
 from rttrr_pin.errors import OracleError, UnknownNameError
-
-Array = NDArray[np.float64]
 
 ORACLES = {
     "pinocchio": "rttrr_pin.implementations.pinocchio:PinocchioOracle",

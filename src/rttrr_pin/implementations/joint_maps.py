@@ -10,12 +10,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joint import JointEffects, JointType, Mimic
 from rttrr_pin.core.model import Model
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

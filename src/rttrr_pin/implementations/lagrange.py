@@ -28,9 +28,9 @@ from importlib import metadata
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rttrr_pin.core.algebra import Scalar, Vector
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dual import Dual, part_of, value_of
 from rttrr_pin.core.dynamics import bodies, joint_states
 from rttrr_pin.core.energy import drive_power, gyroscopic, kinetic_energy, moving_links, payload_power, potential_energy
@@ -45,8 +45,6 @@ from rttrr_pin.implementations import Evaluation
 
 if TYPE_CHECKING:
     from rttrr_pin.core.newton_euler import Payload
-
-Array = NDArray[np.float64]
 
 
 class LagrangeOracle:

@@ -5,11 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.scalars import EPS
-
-Array = NDArray[np.float64]
 
 TOLERANCE = 64 * EPS
 """Relative; merging inertias over fixed joints and turning them by rpy rounds a few times."""

@@ -29,8 +29,8 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joint import JointType
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
@@ -39,8 +39,6 @@ from rttrr_pin.implementations import Evaluation
 from rttrr_pin.implementations.joint_maps import OracleJoint, friction, reduce_forces
 from rttrr_pin.implementations.mujoco_model import PREFIX, build, mujoco_joints, rotation_of
 from rttrr_pin.implementations.mujoco_rounding import rounding
-
-Array = NDArray[np.float64]
 
 
 class MujocoOracle:

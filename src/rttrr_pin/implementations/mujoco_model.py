@@ -24,16 +24,14 @@ from typing import Any
 import mujoco
 import numpy as np
 from lxml import etree
-from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joint import AXIAL, Joint, JointType
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.errors import ModelMismatchError, OracleError
 from rttrr_pin.implementations import urdf_of
 from rttrr_pin.implementations.joint_maps import OracleJoint, own_slices
 from rttrr_pin.implementations.model_comparison import differs
-
-Array = NDArray[np.float64]
 
 PREFIX = "link "
 """Before the name of each link: MuJoCo has a body of its own that is called world."""

@@ -22,11 +22,9 @@ from typing import Any
 
 import mujoco
 import numpy as np
-from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.scalars import EPS
-
-Array = NDArray[np.float64]
 
 OPERATIONS = 4
 """Roundings in eps on the way of each term over one level: a quaternion product, its matrix, a sum."""

@@ -20,8 +20,8 @@ from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import ROOT_JOINT, UNIVERSE, Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.scalars import EPS
@@ -32,8 +32,6 @@ from rttrr_pin.implementations.joint_maps import reduce_forces
 from rttrr_pin.implementations.pinocchio_joints import Motion, driving_forces, expand, pin_joints, reach
 from rttrr_pin.implementations.pinocchio_model import differences, pin_links, product
 from rttrr_pin.implementations.pinocchio_rounding import OPERATIONS, rounding
-
-Array = NDArray[np.float64]
 
 
 class PinocchioOracle:

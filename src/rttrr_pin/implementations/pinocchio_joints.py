@@ -18,13 +18,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joint import JointType
 from rttrr_pin.core.model import Model
 from rttrr_pin.implementations.joint_maps import OracleJoint, friction, own_slices
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,13 +8,11 @@ from typing import Any
 
 import numpy as np
 import pinocchio as pin
-from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joint import AXIAL, Joint, JointType
 from rttrr_pin.core.model import Model
 from rttrr_pin.implementations.model_comparison import differs
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -18,12 +18,10 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.scalars import EPS
 from rttrr_pin.implementations.pinocchio_model import PinLink
-
-Array = NDArray[np.float64]
 
 OPERATIONS = 4
 """Roundings on the way of each term over one joint: a vector product, a sum, a change of frame."""

@@ -5,13 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.inspection.exact import Shape
 from rttrr_pin.inspection.reading import Document
 from rttrr_pin.inspection.results import LinkRow
-
-Array = NDArray[np.float64]
 
 ROUNDING = 1e-14
 """Of the largest: what is smaller is what diagonalising leaves of a zero. For show; verdicts are decided exactly."""

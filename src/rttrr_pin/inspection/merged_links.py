@@ -5,12 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.solids import rotation
 from rttrr_pin.inspection.reading import Document
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False)

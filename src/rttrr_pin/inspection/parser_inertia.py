@@ -9,13 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.inspection.bodies import principal
 from rttrr_pin.inspection.merged_links import lumps
 from rttrr_pin.inspection.reading import Document, Mass
-
-Array = NDArray[np.float64]
 
 EPS = float(np.finfo(np.float64).eps)
 

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from itertools import permutations
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.solids import rotation
 from rttrr_pin.inspection.bodies import principal
 from rttrr_pin.inspection.check import Check, Observation, Subject
@@ -16,8 +16,6 @@ from rttrr_pin.inspection.exact import DIAGONAL
 from rttrr_pin.inspection.reading import Body, Mass
 from rttrr_pin.inspection.results import Edit, Severity
 from rttrr_pin.inspection.shapes import Filled, Looks
-
-Array = NDArray[np.float64]
 
 LARGEST_GYRATION = 1.5
 """Radius of gyration over the distance of the farthest point drawn. No mass inside the drawing gives more than 1."""

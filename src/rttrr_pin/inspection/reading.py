@@ -9,8 +9,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.solids import Triple, rotation
 from rttrr_pin.inspection.exact import (
     Matrix,
@@ -25,8 +25,6 @@ from rttrr_pin.urdf.checks import INERTIA_ENTRIES
 from rttrr_pin.urdf.decimals import Number
 from rttrr_pin.urdf.document import parse_xml
 from rttrr_pin.urdf.sources import Source
-
-Array = NDArray[np.float64]
 
 LIMITS = ("lower", "upper", "velocity", "effort")
 

@@ -7,17 +7,15 @@ from dataclasses import asdict
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Column, Table
 from rich.text import Text
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.inspection import Does, Finding, Inspection, LinkRow, Repaired, Severity, Verdict
 from rttrr_pin.inspection.exact import Shape
 from rttrr_pin.inspection.results import MEANING
-
-Array = NDArray[np.float64]
 
 MOST_LINKS = 40
 """Beyond it the table shows the first links, unless all are asked for."""

@@ -6,12 +6,8 @@ import enum
 from dataclasses import dataclass, field
 from functools import cached_property
 
-import numpy as np
-from numpy.typing import NDArray
-
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.inspection.exact import Shape
-
-Array = NDArray[np.float64]
 
 
 class Severity(enum.StrEnum):

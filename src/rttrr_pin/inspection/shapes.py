@@ -16,12 +16,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.solids import Box, Cylinder, RigidBody, Sphere, rotation
 from rttrr_pin.inspection.reading import Body, Geometry
-
-Array = NDArray[np.float64]
 
 MESH_TYPES = (".stl", ".dae", ".obj", ".ply")
 

@@ -6,10 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-from numpy.typing import NDArray
-
 from rttrr_pin.core.algebra import ZERO, Scalar, Vector
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dual import Dual, part_of, value_of
 from rttrr_pin.core.dynamics import Result, bodies, dynamics
 from rttrr_pin.core.energy import LinkState, moving_links
@@ -21,7 +19,6 @@ from rttrr_pin.core.scalars import Arithmetic, columns
 from rttrr_pin.core.tangent import TIME, in_time, over_duals
 from rttrr_pin.exact.rounding import BOUNDED, Bounded, coordinate_scalars
 
-Array = NDArray[np.float64]
 Rows = list[list[Scalar]]
 
 

@@ -5,17 +5,15 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rttrr_pin.core.algebra import ZERO, Scalar
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dual import Dual, part_of
 from rttrr_pin.core.dynamics import dynamics, joint_states
 from rttrr_pin.core.energy import gyroscopic
 from rttrr_pin.core.scalars import UNIT_ROUNDOFF
 from rttrr_pin.exact.rounding import Bounded, values_and_bounds
 from rttrr_pin.laws.case import Case, Rows
-
-Array = NDArray[np.float64]
 
 EIGENVALUES = 32
 """Backward error of symmetric eigenvalues in units of n u |M| (LAPACK Users' Guide, section 4.7: a modest p(n))."""

@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rttrr_pin.core.algebra import Scalar
 from rttrr_pin.core.batch import blocks
@@ -22,8 +21,6 @@ from rttrr_pin.robot import Robot
 from rttrr_pin.validation.compare import Worst
 from rttrr_pin.validation.run import in_words
 from rttrr_pin.validation.states import LAST_STATE, Sampler, States
-
-Array = NDArray[np.float64]
 
 BLOCK = 1024
 """States tried at a time; the memory of a run is that of one block. With fewer, calls cost more than arithmetic."""

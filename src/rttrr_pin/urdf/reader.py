@@ -12,16 +12,14 @@ from fractions import Fraction
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joint import AXIAL, Joint, JointEffects, JointType, Limits, Mimic
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.errors import InputError, UrdfError, shortened
 from rttrr_pin.urdf.checks import check_document
 from rttrr_pin.urdf.document import parse_xml
 from rttrr_pin.urdf.sources import AnySource, Source, find
-
-Array = NDArray[np.float64]
 
 LOOKS = ("visual", "collision", "material", "calibration", "safety_controller")
 """Elements that yourdfpy parses and dynamics do not need."""

@@ -19,14 +19,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import LINK_QUANTITIES, QUANTITIES, LinkWrenches
 from rttrr_pin.implementations import Evaluation
-
-Array = NDArray[np.float64]
 
 HANDOVER = 4 * EPS
 """Relative: payloads, placements and angles are rounded on their way into the oracle's conventions."""

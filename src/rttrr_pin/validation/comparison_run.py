@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import LinkWrenches, Wrench
@@ -18,8 +17,6 @@ from rttrr_pin.validation.adjudicate import adjudicate_state
 from rttrr_pin.validation.compare import Comparison, Gap, Ranking, Row
 from rttrr_pin.validation.ours import Ours
 from rttrr_pin.validation.states import Sampler, States
-
-Array = NDArray[np.float64]
 
 HUGE = 1e140
 """Numbers whose squares, times anything that occurs, stay within float64."""

@@ -5,19 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 import numpy as np
-from numpy.typing import NDArray
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import STANDARD_GRAVITY
 from rttrr_pin.core.wrench import LINK_QUANTITIES, QUANTITIES, LinkWrenches
 from rttrr_pin.validation import Row, StateComparison, StateReport, Validation
 from rttrr_pin.validation.report_adjudication import show_adjudicated, show_adjudication
 from rttrr_pin.validation.report_several import against, places, several_table, word
-
-Array = NDArray[np.float64]
 
 MOST_ROWS = 60
 """Beyond it the table keeps the worst row of each quantity."""

@@ -10,16 +10,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import differential_evolution
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.inputs import whole_number
 from rttrr_pin.core.wrench import Wrench
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.comparison_run import ComparisonRun, Oracles
 from rttrr_pin.validation.states import States
-
-Array = NDArray[np.float64]
 
 POPULATION = 256
 """States in one generation."""

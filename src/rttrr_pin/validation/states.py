@@ -13,13 +13,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.inputs import whole_number
 from rttrr_pin.core.joint import Joint, JointType
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.errors import UnknownNameError
 
-Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 PER_COUNTER = 4
