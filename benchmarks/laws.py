@@ -38,7 +38,7 @@ def one(job: tuple[int, int]) -> tuple[int, str, dict[str, tuple[float, int, int
     )
     report = check_laws(robot, states, seed, "mixed")
     seen = {row.law.id: (row.share.value, row.violations, row.numbers * states) for row in report.rows}
-    kinds = Counter(joint.type.value + (" following" if joint.mimic else "") for joint in robot.model.joints)
+    kinds = Counter(joint.type.name + (" following" if joint.mimic else "") for joint in robot.model.joints)
     return seed, base, seen, kinds
 
 

@@ -15,7 +15,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.core.joint import Joint, JointType
+from rttrr_pin.core.joint import Joint
+from rttrr_pin.core.joints import REVOLUTE
 from rttrr_pin.core.model import Link, Model
 
 Array = NDArray[np.float64]
@@ -99,7 +100,7 @@ def arm(name: str, rows: tuple[Row, ...], bodies: tuple[Body, ...]) -> Model:
         R = quarter_turns(row.turns)
         p = np.array([row.a, 0.0, 0.0]) + row.d * R[:, 2]
         z = np.array([0.0, 0.0, 1.0])
-        joints.append(Joint(f"joint_{i + 1}", JointType.REVOLUTE, parent=i - 1, R=R, p=p, axis=z))
+        joints.append(Joint(f"joint_{i + 1}", REVOLUTE, parent=i - 1, R=R, p=p, axis=z))
     return Model(name, Link("base"), tuple(links), tuple(joints))
 
 

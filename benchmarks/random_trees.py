@@ -35,7 +35,7 @@ def one(job: tuple[int, int]) -> tuple[int, list[str], bool, float, float, Count
             bad.append(base)
         eps = max(eps, *(seen.value for seen in result.whole.values()))
         share = max(share, *(row.share.value for row in result.rows))
-        kinds.update(joint.type.value + (" following" if joint.mimic else "") for joint in robot.model.joints)
+        kinds.update(joint.type.name + (" following" if joint.mimic else "") for joint in robot.model.joints)
     return seed, bad, bool(bad), eps, share, kinds
 
 

@@ -247,10 +247,11 @@ class Robot:
 
     def inertial_parameters(self) -> Array:
         """The parameters that `regressor` multiplies, (10 links,), ten for each link."""
-        from rttrr_pin.compile.regrouping import Inertia
+        from rttrr_pin.core.inertia import SpatialInertia
 
         found: list[float] = []
-        for link in map(Inertia.of, bodies(self.model, FLOAT)):
+        for body in bodies(self.model, FLOAT):
+            link = SpatialInertia.of(body.M, body.r_C, body.I)
             x, y, z = link.J.rows
             found += [link.m, *link.h, x.x, x.y, y.y, x.z, y.z, z.z]
         return np.array(found, dtype=np.float64)

@@ -21,7 +21,8 @@ from numpy.typing import NDArray
 
 import rttrr_pin
 from rttrr_pin import LinkWrenches, Robot, Wrench
-from rttrr_pin.core.joint import Joint, JointType
+from rttrr_pin.core.joint import Joint
+from rttrr_pin.core.joints import FIXED, JOINT_TYPES
 from rttrr_pin.core.model import Link, Model
 from support.tolerances import ROUNDING
 
@@ -211,9 +212,9 @@ def random_arm(rng: np.random.Generator) -> Robot:
         half = rng.normal(size=(3, 3))
         links.append(Link(f"link_{i + 1}", rng.uniform(0.5, 5.0), rng.normal(size=3), half + half.T))
         unit = np.eye(3)["xyz".index(axis)]
-        joints.append(Joint(f"joint_{i + 1}", JointType(kind), i - 1, p=np.array(p[i]), axis=unit))
+        joints.append(Joint(f"joint_{i + 1}", JOINT_TYPES[kind], i - 1, p=np.array(p[i]), axis=unit))
     links.append(Link("tool"))
-    joints.append(Joint("tool_joint", JointType.FIXED, 4, p=np.array(p[5])))
+    joints.append(Joint("tool_joint", FIXED, 4, p=np.array(p[5])))
     gravity = np.array([0.0, 0.0, rng.uniform(-20.0, -1.0)])
     return Robot(Model("random RTTRR", Link("base"), tuple(links), tuple(joints), gravity))
 

@@ -20,7 +20,8 @@ from rttrr_pin import JointEffects, Robot, Wrench
 from rttrr_pin.compile import cache
 from rttrr_pin.compile.emit.llvm import LlvmEmitter
 from rttrr_pin.compile.kernel import fingerprint
-from rttrr_pin.core.joint import Joint, JointType, Mimic
+from rttrr_pin.core.joint import Joint, Mimic
+from rttrr_pin.core.joints import JOINT_TYPES, PRISMATIC, REVOLUTE
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.errors import CacheWarning
 
@@ -30,12 +31,13 @@ import os, sys, warnings
 import numpy as np
 from rttrr_pin import Robot
 from rttrr_pin.compile.emit.llvm import LlvmEmitter
-from rttrr_pin.core.joint import Joint, JointType
+from rttrr_pin.core.joint import Joint
+from rttrr_pin.core.joints import REVOLUTE
 from rttrr_pin.core.model import Link, Model
 
 def robot(mass=2.0):
     link = Link("a", mass, np.array([0.1, 0.2, 0.3]), np.diag([1.0, 2.0, 2.5]))
-    joint = Joint("j", JointType.REVOLUTE, axis=np.array([0.0, 1.0, 0.0]))
+    joint = Joint("j", REVOLUTE, axis=np.array([0.0, 1.0, 0.0]))
     return Robot(Model("one", Link("base"), (link,), (joint,)))
 
 STATE = ([0.3], [0.4], [0.5])
@@ -45,7 +47,7 @@ STATE = ([0.3], [0.4], [0.5])
 def robot(mass: float = 2.0) -> Robot:
     """Of one joint, the same in every process."""
     link = Link("a", mass, np.array([0.1, 0.2, 0.3]), np.diag([1.0, 2.0, 2.5]))
-    joint = Joint("j", JointType.REVOLUTE, axis=np.array([0.0, 1.0, 0.0]))
+    joint = Joint("j", REVOLUTE, axis=np.array([0.0, 1.0, 0.0]))
     return Robot(Model("one", Link("base"), (link,), (joint,)))
 
 
@@ -379,9 +381,9 @@ def rich() -> Model:
     links = tuple(Link(f"link_{i}", 1.0 + i, rng.uniform(-1, 1, 3), tensor + i * np.eye(3)) for i in range(3))
     effects = JointEffects(0.1, 0.2, 0.3)
     joints = (
-        Joint("a", JointType.REVOLUTE, -1, R, rng.uniform(-1, 1, 3), axis, effects=effects),
-        Joint("b", JointType.PRISMATIC, 0, R, rng.uniform(-1, 1, 3), axis, effects=effects),
-        Joint("c", JointType.REVOLUTE, 1, R, rng.uniform(-1, 1, 3), axis, mimic=Mimic(0, 0.5, 0.25), effects=effects),
+        Joint("a", REVOLUTE, -1, R, rng.uniform(-1, 1, 3), axis, effects=effects),
+        Joint("b", PRISMATIC, 0, R, rng.uniform(-1, 1, 3), axis, effects=effects),
+        Joint("c", REVOLUTE, 1, R, rng.uniform(-1, 1, 3), axis, mimic=Mimic(0, 0.5, 0.25), effects=effects),
     )
     return Model("rich", Link("base"), links, joints)
 
@@ -419,7 +421,9 @@ def neighbours(model: Model) -> Iterator[Model]:
         if joint.mimic is not None:
             joints += [replace(joint, mimic=x) for x in nudged_fields(joint.mimic, (), ("multiplier", "offset"))]
             joints += [replace(joint, mimic=replace(joint.mimic, joint=1)), replace(joint, mimic=None)]
-        joints += [replace(joint, type=kind) for kind in JointType if kind.rotates and kind is not joint.type]
+        joints += [
+            replace(joint, type=kind) for kind in JOINT_TYPES.values() if kind.rotates and kind is not joint.type
+        ]
         joints += [replace(joint, parent=parent) for parent in range(-1, i) if parent != joint.parent]
         for changed in links:
             yield replace(model, links=(*model.links[:i], changed, *model.links[i + 1 :]))

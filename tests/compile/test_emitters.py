@@ -106,7 +106,7 @@ def test_payloads_in_both_axes(rttrr: Robot, name: str) -> None:
 
 
 def test_a_tree_of_every_joint_type_with_followers_and_drives(tree: Robot, name: str) -> None:
-    assert {joint.type.value for joint in tree.model.joints} == {
+    assert {joint.type.name for joint in tree.model.joints} == {
         "revolute", "continuous", "prismatic", "planar", "floating", "fixed"
     }  # fmt: skip
     assert any(joint.mimic for joint in tree.model.joints)

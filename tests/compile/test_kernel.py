@@ -117,7 +117,7 @@ def test_payloads(rttrr: Robot, case: str, emitter: str) -> None:
 
 def test_payloads_on_a_tree_and_a_fixed_link() -> None:
     robot = tree(5, 9)
-    fixed = next(joint for joint in robot.model.joints if joint.type == "fixed")
+    fixed = next(joint for joint in robot.model.joints if not joint.nv)
     on_fixed = robot.model.link_names[robot.model.joints.index(fixed)]
     agree(robot, "tau", [Wrench((1, 2, 3), (4, 5, 6), on_fixed, "base"), Wrench((1, 2, 3), link=robot.link_names[-1])])
 
@@ -836,11 +836,12 @@ FORKED = """
 import os, sys
 import numpy as np
 from rttrr_pin import Robot
-from rttrr_pin.core.joint import Joint, JointType
+from rttrr_pin.core.joints import REVOLUTE
+from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.model import Link, Model
 
 link = Link("a", 2.0, np.array([0.1, 0.2, 0.3]), np.diag([1.0, 2.0, 2.5]))
-robot = Robot(Model("one", Link("base"), (link,), (Joint("j", JointType.REVOLUTE, axis=np.array([0.0, 1.0, 0.0])),)))
+robot = Robot(Model("one", Link("base"), (link,), (Joint("j", REVOLUTE, axis=np.array([0.0, 1.0, 0.0])),)))
 state = np.random.default_rng(0).uniform(-1, 1, (3, 2 * 8192 + 5, 1))
 expected = robot.compile("tau")(*state, threads=2)
 child = os.fork()

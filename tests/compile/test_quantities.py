@@ -12,7 +12,7 @@ import pytest
 import rttrr_pin
 from rttrr_pin import JointEffects, Robot, Wrench
 from rttrr_pin.compile import QUANTITIES
-from rttrr_pin.core.joint import JointType
+from rttrr_pin.core.joints import CONTINUOUS, FLOATING, PLANAR
 from rttrr_pin.errors import InputError
 from rttrr_pin.validation import Sampler
 from support.serial_chains import inertial, joint, random_chain
@@ -62,7 +62,7 @@ def pin_coordinates(robot: Robot, q: np.ndarray) -> np.ndarray:
     for each in robot.model.moving:
         own = list(q[:, at : at + each.nq].T)
         at += each.nq
-        if each.type in (JointType.CONTINUOUS, JointType.PLANAR):
+        if each.type in (CONTINUOUS, PLANAR):
             own = [*own[:-1], np.cos(own[-1]), np.sin(own[-1])]
         columns += own
     return np.stack(columns, axis=1)
@@ -193,7 +193,7 @@ def our_coordinates(robot: Robot, own: np.ndarray, q: np.ndarray, near: np.ndarr
     values: list[float] = []
     at = 0
     for each, first in zip(robot.model.moving, own, strict=False):
-        wide = each.type in (JointType.CONTINUOUS, JointType.PLANAR)
+        wide = each.type in (CONTINUOUS, PLANAR)
         part = list(q[at : at + each.nq + wide])
         at += each.nq + wide
         if wide:
@@ -201,7 +201,7 @@ def our_coordinates(robot: Robot, own: np.ndarray, q: np.ndarray, near: np.ndarr
             before = near[first + each.nq - 1]
             turn = np.arctan2(s * np.cos(before) - c * np.sin(before), c * np.cos(before) + s * np.sin(before))
             part = [*part[:-2], before + turn]
-        elif each.type is JointType.FLOATING:
+        elif each.type == FLOATING:
             part[3:] /= np.linalg.norm(part[3:])
         values += part
     return np.array(values)

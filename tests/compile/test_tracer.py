@@ -20,7 +20,7 @@ from rttrr_pin.compile.regrouping import regroup
 from rttrr_pin.compile.trace import trace
 from rttrr_pin.core.dual import Dual, part_of, value_of
 from rttrr_pin.core.dynamics import bodies, dynamics
-from rttrr_pin.core.joint_motion import Body
+from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import FLOAT
 from rttrr_pin.validation import Sampler

@@ -10,6 +10,7 @@ import pytest
 
 import rttrr_pin
 from rttrr_pin import JointEffects, Robot, RttrrError
+from rttrr_pin.core.joints import JOINT_TYPES
 from rttrr_pin.errors import InputError, NumberError, ShapeError, UnknownNameError, UrdfError
 from rttrr_pin.implementations import make_oracle
 from rttrr_pin.validation import Sampler, validate
@@ -33,7 +34,7 @@ def test_random_trees_agree_with_pinocchio(seed: int, base: Any) -> None:
 def test_each_joint_type_alone_and_below_itself(kind: str) -> None:
     for joints in (1, 3):
         robot = rttrr_pin.load(random_tree(joints, joints, (kind,), mimics=False))
-        assert {joint.type for joint in robot.model.joints} == {kind}
+        assert {joint.type for joint in robot.model.joints} == {JOINT_TYPES[kind]}
         assert validate(robot, 40, sampling="mixed").agrees
 
 

@@ -21,7 +21,8 @@ from rttrr_pin import JointEffects, Robot, Wrench
 from rttrr_pin import derivation as symbolic
 from rttrr_pin.cli import main
 from rttrr_pin.compile.emit.c import compiler
-from rttrr_pin.core.joint import Joint, JointType, Mimic
+from rttrr_pin.core.joint import Joint, Mimic
+from rttrr_pin.core.joints import CONTINUOUS, PLANAR, PRISMATIC, REVOLUTE
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.derivation import forms
@@ -144,7 +145,7 @@ def _their_coordinates(name: str, q: np.ndarray) -> np.ndarray:
     columns, rest = [], list(q.T)
     for joint in robot(name).model.moving:
         own, rest = rest[: joint.nq], rest[joint.nq :]
-        if joint.type in (JointType.CONTINUOUS, JointType.PLANAR):
+        if joint.type in (CONTINUOUS, PLANAR):
             own = [*own[:-1], np.cos(own[-1]), np.sin(own[-1])]
         columns += own
     return np.stack(columns, axis=1)
@@ -338,10 +339,10 @@ def branched() -> Model:
     rng = np.random.default_rng(0)
     x, y, z = np.eye(3)
     joints = (
-        Joint("a", JointType.REVOLUTE, -1, p=rng.normal(size=3), axis=z),
-        Joint("b", JointType.PRISMATIC, 0, p=rng.normal(size=3), axis=y),
-        Joint("c", JointType.REVOLUTE, 0, p=rng.normal(size=3), axis=x),
-        Joint("d", JointType.REVOLUTE, 2, p=rng.normal(size=3), axis=y, mimic=Mimic(0, -1.5, 0.25)),
+        Joint("a", REVOLUTE, -1, p=rng.normal(size=3), axis=z),
+        Joint("b", PRISMATIC, 0, p=rng.normal(size=3), axis=y),
+        Joint("c", REVOLUTE, 0, p=rng.normal(size=3), axis=x),
+        Joint("d", REVOLUTE, 2, p=rng.normal(size=3), axis=y, mimic=Mimic(0, -1.5, 0.25)),
     )
     links = tuple(Link(joint.name, 2.0, rng.normal(size=3), np.diag(rng.uniform(size=3))) for joint in joints)
     return Model("branched", Link("base"), links, joints)

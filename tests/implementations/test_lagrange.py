@@ -14,7 +14,8 @@ from rttrr_pin import Robot
 from rttrr_pin.cli import main
 from rttrr_pin.core import dynamics as arithmetic
 from rttrr_pin.core import newton_euler
-from rttrr_pin.core.joint import Joint, JointEffects, JointType
+from rttrr_pin.core.joint import Joint, JointEffects
+from rttrr_pin.core.joints import PRISMATIC, REVOLUTE
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.exact.intervals import INTERVAL, interval, precision
 from rttrr_pin.implementations import make_oracle
@@ -60,8 +61,8 @@ def test_a_payload_in_base_axes_is_turned() -> None:
 
 def test_a_robot_made_from_numbers_can_be_validated() -> None:
     """Lagrange's equations need no file."""
-    slider = Joint("slide", JointType.PRISMATIC, axis=np.array([0.0, 0.0, 1.0]))
-    turner = Joint("turn", JointType.REVOLUTE, parent=0, p=np.array([0.5, 0.0, 0.0]))
+    slider = Joint("slide", PRISMATIC, axis=np.array([0.0, 0.0, 1.0]))
+    turner = Joint("turn", REVOLUTE, parent=0, p=np.array([0.5, 0.0, 0.0]))
     links = (Link("a", 2.0), Link("b", 1.0, np.array([0.0, 0.25, 0.0]), np.eye(3)))
     robot = Robot(Model("numbers", Link("base"), links, (slider, turner)))
     assert validate(robot.with_joint_effects({"slide": JointEffects(armature=3.0)}), 50, oracle="lagrange").agrees

@@ -14,7 +14,8 @@ from tests.implementations.test_pinocchio import TAMPERED, with_joint, with_link
 import rttrr_pin
 from rttrr_pin import JointEffects, Robot, Wrench
 from rttrr_pin import implementations as oracles
-from rttrr_pin.core.joint import Joint, JointType, Limits, Mimic
+from rttrr_pin.core.joint import Joint, Limits, Mimic
+from rttrr_pin.core.joints import REVOLUTE
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.errors import ModelMismatchError, OracleError
 from rttrr_pin.implementations import make_oracle
@@ -197,7 +198,7 @@ def test_an_error_of_1e_10_in_one_mass_of_a_tree_is_seen(base: Any, monkeypatch:
 
 KNOWN = {case: pair for case, pair in TAMPERED.items() if case not in ("velocity", "name")} | {
     "parent": (lambda m: with_joint(m, parent=0), "joint 'joint_3': hangs on 'link_2', the file says 'link_1'"),
-    "type": (lambda m: with_joint(m, type=JointType.REVOLUTE), "joint 'joint_3': made of .*SLIDE"),
+    "type": (lambda m: with_joint(m, type=REVOLUTE), "joint 'joint_3': made of .*SLIDE"),
     "joint": (lambda m: with_joint(m, name="joint_x"), "link 'link_3': carried by joint_3, the file says joint_x"),
     "link": (lambda m: with_link(m, name="link_x"), "links: base, .*link_3.* the file has .*link_x"),
 }
@@ -223,7 +224,7 @@ def test_a_misread_follower_is_an_error(mimic: Mimic) -> None:
 
 
 def test_a_model_made_from_numbers_has_no_oracle() -> None:
-    model = Model("numbers", Link("base"), (Link("arm", 1.0),), (Joint("j", JointType.REVOLUTE, limits=Limits()),))
+    model = Model("numbers", Link("base"), (Link("arm", 1.0),), (Joint("j", REVOLUTE, limits=Limits()),))
     with pytest.raises(OracleError, match="made from numbers"):
         make_oracle("mujoco", model)
 

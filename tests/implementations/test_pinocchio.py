@@ -11,7 +11,8 @@ import pytest
 
 import rttrr_pin
 from rttrr_pin import Robot
-from rttrr_pin.core.joint import Joint, JointEffects, JointType, Limits, Mimic
+from rttrr_pin.core.joint import Joint, JointEffects, Limits, Mimic
+from rttrr_pin.core.joints import PLANAR, REVOLUTE
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.errors import InputError, ModelMismatchError, OracleError, UnknownNameError
 from rttrr_pin.implementations import make_oracle
@@ -64,7 +65,7 @@ def test_the_untampered_model_is_accepted(robot: Robot) -> None:
 
 
 def test_a_model_made_from_numbers_has_no_oracle() -> None:
-    model = Model("numbers", Link("base"), (Link("arm", 1.0),), (Joint("j", JointType.REVOLUTE, limits=Limits()),))
+    model = Model("numbers", Link("base"), (Link("arm", 1.0),), (Joint("j", REVOLUTE, limits=Limits()),))
     with pytest.raises(OracleError, match="made from numbers"):
         make_oracle("pinocchio", model)
 
@@ -152,7 +153,7 @@ def test_names_that_pinocchio_keeps_for_itself_are_refused() -> None:
         (lambda m: with_joint(m, axis=[0, 2.0, 0]), "expected a unit vector"),
         (lambda m: with_joint(m, name="joint_1"), "'joint_1' stands 2 times"),
         (lambda m: with_joint(m, mimic=Mimic(17)), "does not move by itself"),
-        (lambda m: with_joint(m, type=JointType.PLANAR), r"expected \[0, 0, 1\]"),
+        (lambda m: with_joint(m, type=PLANAR), r"expected \[0, 0, 1\]"),
     ],
     ids=["mass", "symmetry", "rotation", "axis", "names", "mimic", "planar"],
 )

@@ -21,7 +21,8 @@ import pytest
 from numpy.typing import NDArray
 
 from rttrr_pin import Robot, Wrench
-from rttrr_pin.core.joint import Joint, JointType
+from rttrr_pin.core.joint import Joint
+from rttrr_pin.core.joints import FIXED, PRISMATIC, REVOLUTE
 from rttrr_pin.core.model import Link, Model
 from support.tolerances import EXACT, NINE_DIGITS, norm_error
 
@@ -36,7 +37,7 @@ COUNTS = {
 }
 """How many published results each file holds, by the list they stand in."""
 
-TYPES = {"R": JointType.REVOLUTE, "P": JointType.PRISMATIC}
+TYPES = {"R": REVOLUTE, "P": PRISMATIC}
 
 TOOL = "tool"
 
@@ -128,7 +129,7 @@ def robot(file: str, name: str, gravity: tuple[float, float, float]) -> Robot:
         for i, x in enumerate(chain["links"], start=1)
     ]
     links.append(Link(TOOL))
-    joints.append(Joint(TOOL, JointType.FIXED, len(joints) - 1, chain["R_tip"], chain["p_tip"], rotated=True))
+    joints.append(Joint(TOOL, FIXED, len(joints) - 1, chain["R_tip"], chain["p_tip"], rotated=True))
     return Robot(Model(name, Link("base"), tuple(links), tuple(joints), np.array(gravity)))
 
 

@@ -17,7 +17,7 @@ def test_the_arm_has_the_joints_of_its_code(code: str, tmp_path: Path) -> None:
     assert main(["new", code, "-o", str(path)]) == 0
     robot = rttrr_pin.load(path)
     assert robot.name == code.lower()
-    assert [joint.type for joint in robot.model.moving] == [module.type for module in modules_of(code)]
+    assert [joint.type.name for joint in robot.model.moving] == [module.type for module in modules_of(code)]
     assert [tuple(joint.axis) for joint in robot.model.moving] == [module.axis for module in modules_of(code)]
     assert list(tmp_path.iterdir()) == [path]
 

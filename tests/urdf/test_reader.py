@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import rttrr_pin
-from rttrr_pin.core.joint import JointType
+from rttrr_pin.core.joints import REVOLUTE
 from rttrr_pin.errors import UnknownNameError, UrdfError
 from rttrr_pin.urdf.sources import LARGEST_FILE
 from support.serial_chains import EXAMPLES
@@ -43,7 +43,7 @@ def test_reads_what_is_written() -> None:
     assert link.mass == 1.5
     assert link.com.tolist() == [0.1, 0.2, 0.3]
     assert link.inertia.tolist() == [[0.1, 0.01, 0.02], [0.01, 0.2, 0.03], [0.02, 0.03, 0.15]]
-    assert (joint.type, joint.parent, model.joints[1].parent) == (JointType.REVOLUTE, -1, 0)
+    assert (joint.type, joint.parent, model.joints[1].parent) == (REVOLUTE, -1, 0)
     assert joint.p.tolist() == [0, 0, 0.5]
     assert joint.axis.tolist() == [0, 0, 1]
     assert (joint.limits.lower, joint.limits.upper, joint.limits.velocity, joint.limits.effort) == (-1, 1, 2, 3)

@@ -156,12 +156,12 @@ def _from_urdf(about: Table, links: Sequence[Table], find: Callable[[str], str])
 
 
 def _moves_so(joint: Joint, kind: str, axis: tuple[float, ...]) -> bool:
-    same_kind = joint.type.value == kind or (kind == "revolute" and joint.type.rotates)
+    same_kind = joint.type.name == kind or (kind == "revolute" and joint.type.rotates)
     return same_kind and (kind == "fixed" or tuple(float(x) for x in joint.axis) == axis)
 
 
 def _said(joint: Joint) -> str:
-    return joint.type.value + ("" if joint.type.value == "fixed" else f" about or along {joint.axis.tolist()}")
+    return joint.type.name + ("" if joint.type.name == "fixed" else f" about or along {joint.axis.tolist()}")
 
 
 def _placed(slot: Slot, places: Sequence[int]) -> Slot:

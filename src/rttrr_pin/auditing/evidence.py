@@ -12,7 +12,7 @@ from flint import arb
 
 from rttrr_pin.core.algebra import Matrix, Scalar, Vector
 from rttrr_pin.core.dynamics import dynamics
-from rttrr_pin.core.joint_motion import Body
+from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.newton_euler import Payload
 from rttrr_pin.core.payload import Load
 from rttrr_pin.derivation.chain import SymbolicRobot
@@ -154,7 +154,16 @@ class Witness:
     def _body(self, body: Body) -> Body:
         R, I = (Matrix(tuple(self._vector(row) for row in matrix.rows)) for matrix in (body.R, body.I))  # type: ignore[arg-type]
         p, r_C = self._vector(body.p), self._vector(body.r_C)
-        return Body(body.type, self._vector(body.axis), R, p, self._ball(body.M), r_C, I)
+        return Body(
+            body.type,
+            self._vector(body.axis),
+            R,
+            p,
+            self._ball(body.M),
+            r_C,
+            I,
+            tuple(map(self._ball, body.parameters)),
+        )
 
 
 def weigh(witness: Witness, component: tuple[str, int, int], printed: Terms, corrected: Terms) -> Evidence:

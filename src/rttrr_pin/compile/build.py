@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from itertools import accumulate
 
 from rttrr_pin.compile.bounds import with_bounds
 from rttrr_pin.compile.call_program import CallProgram
@@ -16,7 +15,6 @@ from rttrr_pin.compile.register_allocation import arranged
 from rttrr_pin.compile.simplify import simplify
 from rttrr_pin.compile.summation import order_sums
 from rttrr_pin.compile.trace import TRACING, TRACING_WITH_ERRORS, PayloadSlot, fields, outputs_of, record, trace
-from rttrr_pin.core.joint import JointType
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import Arithmetic
 from rttrr_pin.errors import InputError
@@ -74,15 +72,9 @@ def _bounded(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlo
     plain = tuple(dict.fromkeys(name.removesuffix(BOUND) for name in outputs))
     program = simplify(_whole(model, plain, payloads, TRACING_WITH_ERRORS, WITH_BOUNDS))
     chained = order_sums(program, fused)
-    return with_bounds(chained, outputs_of(model, outputs), _quaternions(model, program), fused)
-
-
-def _quaternions(model: Model, program: Program) -> tuple[int, ...]:
-    """Where each quaternion begins among the inputs, of which q are the first."""
-    if not any(field.name == "q" for field in program.inputs):
-        return ()
-    ends = accumulate(joint.nq for joint in model.moving)
-    return tuple(end - 4 for end, joint in zip(ends, model.moving, strict=True) if joint.type is JointType.FLOATING)
+    # q comes first among the inputs, so that places in q are places among the inputs
+    quaternions = model.quaternions if any(field.name == "q" for field in program.inputs) else ()
+    return with_bounds(chained, outputs_of(model, outputs), quaternions, fused)
 
 
 def _whole(

@@ -80,7 +80,7 @@ class Kernel:
         self._variants: dict[tuple[PayloadSlot, ...], Variant] = {}
         self._lock = threading.Lock()
         self._inputs = "".join(field.name for field in fields(model, self.outputs))
-        self._floats = any(joint.nq != joint.nv for joint in model.moving)
+        self._floats = bool(model.quaternions)
         self._widths = {"q": model.nq, "v": model.nv, "a": model.nv}
         self._one: One | None = None
 
@@ -291,7 +291,7 @@ def fingerprint(model: Model) -> bytes:
     parts: list[object] = [model.gravity.tobytes()]
     for link, joint in zip(model.links, model.joints, strict=True):
         effects, mimic = joint.effects, joint.mimic
-        parts += [link.mass, link.com.tobytes(), link.inertia.tobytes(), joint.type.value, joint.parent]
+        parts += [link.mass, link.com.tobytes(), link.inertia.tobytes(), repr(joint.type), joint.parent]
         parts += [joint.R.tobytes(), joint.p.tobytes(), joint.axis.tobytes()]
         parts += [effects.armature, effects.damping, effects.friction]
         parts += [mimic and (mimic.joint, mimic.multiplier, mimic.offset)]

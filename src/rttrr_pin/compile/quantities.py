@@ -15,7 +15,7 @@ from rttrr_pin.core.algebra import Matrix, Scalar, Vector
 from rttrr_pin.core.dual import Dual, part_of
 from rttrr_pin.core.dynamics import Result, bodies, dynamics
 from rttrr_pin.core.joint import Joint
-from rttrr_pin.core.joint_motion import Body
+from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.newton_euler import Payload
 from rttrr_pin.core.scalars import Arithmetic

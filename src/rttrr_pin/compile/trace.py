@@ -13,7 +13,7 @@ from rttrr_pin.compile.quantities import QUANTITIES, Motion
 from rttrr_pin.compile.regrouping import regroup
 from rttrr_pin.core.algebra import Scalar, Vector
 from rttrr_pin.core.dynamics import bodies
-from rttrr_pin.core.joint_motion import Body
+from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.newton_euler import Payload
 from rttrr_pin.core.scalars import Arithmetic

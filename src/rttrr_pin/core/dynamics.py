@@ -15,7 +15,7 @@ import numpy as np
 from rttrr_pin.core.algebra import Matrix, Scalar, Vector
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joint import Joint, JointEffects, Mimic
-from rttrr_pin.core.joint_motion import Body, JointState
+from rttrr_pin.core.joints.base import Body, JointState
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.newton_euler import Payload, newton_euler
 from rttrr_pin.core.payload import Load, payloads_of
@@ -180,4 +180,5 @@ def body_of(joint: Joint, link: Link, number: NumberOf) -> Body:
         M=number(link.mass, 0.0),
         r_C=Vector.of(link.com, within(0.0)),
         I=Matrix.of(link.inertia, within(turned_tensor)),
+        parameters=tuple(number(x, 0.0) for x in joint.type.parameters),
     )

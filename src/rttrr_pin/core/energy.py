@@ -1,7 +1,7 @@
 """Energy, momentum and power of a robot in motion, over scalars of any kind.
 
 From the kinematics of the joints alone: how {i} stands on its parent and how fast it moves against it
-(`joint_motion.MOTION`). No acceleration and no force is computed here; those come from derivatives, by duals. So what
+(`JointType.motion`). No acceleration and no force is computed here; those come from derivatives, by duals. So what
 is built on this module shares nothing with the Newton-Euler recursion but the motion of single joints, and that is
 checked by derivatives too (law K101).
 
@@ -18,8 +18,7 @@ from typing import TYPE_CHECKING
 from rttrr_pin.core.algebra import IDENTITY, ZERO, Matrix, Scalar, Vector
 from rttrr_pin.core.dual import part_of, value_of
 from rttrr_pin.core.dynamics import joint_states
-from rttrr_pin.core.joint import JointType
-from rttrr_pin.core.joint_motion import MOTION, Body, JointState
+from rttrr_pin.core.joints.base import Body, JointState
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import Arithmetic
 from rttrr_pin.core.tangent import TIME
@@ -72,7 +71,7 @@ def link_states(
     found: list[LinkState] = []
     for joint, body, state in zip(model.joints, links, states, strict=True):
         parent = found[joint.parent] if joint.parent >= 0 else base
-        motion = MOTION[body.type](body, state, arithmetic.sincos)
+        motion = body.type.motion(body, state, arithmetic.sincos)
         R, p = motion.R, motion.p
         found.append(
             LinkState(
@@ -182,21 +181,10 @@ def gyroscopic(model: Model, v: Sequence[Scalar], p: Sequence[Scalar]) -> list[S
     out: list[Scalar] = []
     at = 0
     for joint in model.moving:
-        own_v, own_p = v[at : at + joint.nv], p[at : at + joint.nv]
-        if joint.type is JointType.FLOATING:
-            (linear, w), (P, L) = (_halves(x) for x in (own_v, own_p))
-            out += [*w.cross(P), *(w.cross(L) + linear.cross(P))]
-        elif joint.type is JointType.PLANAR:
-            (v_x, v_y, w_z), (P_x, P_y, _) = own_v, own_p
-            out += [-(w_z * P_y), w_z * P_x, v_x * P_y - v_y * P_x]
-        else:
-            out += [0] * joint.nv
+        own = slice(at, at + joint.nv)
+        out += joint.type.gyroscopic(v[own], p[own])
         at += joint.nv
     return out
-
-
-def _halves(x: Sequence[Scalar]) -> tuple[Vector, Vector]:
-    return Vector(*x[:3]), Vector(*x[3:])
 
 
 def rate_of(vector: Vector) -> Vector:

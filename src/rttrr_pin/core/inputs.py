@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.joint import Joint, JointType
+from rttrr_pin.core.joint import Joint
 from rttrr_pin.errors import InputError, MissingJointError, NumberError, ShapeError, UnknownNameError
 
 Coordinates: TypeAlias = ArrayLike | Mapping[str, ArrayLike]
@@ -153,20 +153,20 @@ def _each(joints: Sequence[Joint]) -> str:
 
 
 def check_quaternions(q: Array, joints: Sequence[Joint]) -> None:
-    """The last four coordinates of a floating joint are a rotation only if they have length 1.
+    """The four numbers of a quaternion are a rotation only if their length is 1.
 
     Raises:
         NumberError: they have not.
     """
     at = 0
     for joint in joints:
-        at += joint.nq
-        if joint.type is not JointType.FLOATING:
-            continue
-        with np.errstate(over="ignore"):
-            squares = (q[..., at - 4 : at] ** 2).sum(axis=-1)
-        bad = np.argwhere(np.abs(squares - 1.0) > UNIT_QUATERNION)
-        if len(bad):
+        for first in (at + k for k in joint.type.quaternions):
+            own = slice(first, first + 4)
+            with np.errstate(over="ignore"):
+                squares = (q[..., own] ** 2).sum(axis=-1)
+            bad = np.argwhere(np.abs(squares - 1.0) > UNIT_QUATERNION)
+            if not len(bad):
+                continue
             index = tuple(int(k) for k in bad[0])
             raise NumberError(
                 f"q{list(index) if index else ''}, joint {joint.name!r}, has a quaternion (x, y, z, w) of length "
@@ -175,8 +175,9 @@ def check_quaternions(q: Array, joints: Sequence[Joint]) -> None:
                 name="q",
                 joint=joint.name,
                 index=index,
-                value=q[index][at - 4 : at].tolist(),
+                value=q[index][own].tolist(),
             )
+        at += joint.nq
 
 
 def _from_dict(name: str, values: Mapping[str, ArrayLike], joints: Sequence[Joint]) -> Array:
@@ -194,7 +195,7 @@ def _from_dict(name: str, values: Mapping[str, ArrayLike], joints: Sequence[Join
         entry = finite(label, real(label, values[joint.name]))
         width = joint.nq if name == "q" else joint.nv
         if width > 1 and (entry.ndim == 0 or entry.shape[-1] != width):
-            slots = joint.type.q_slots if name == "q" else joint.type.v_slots
+            slots = [own.name for own in (joint.type.coordinates if name == "q" else joint.type.rates)]
             raise ShapeError(
                 f"{label} has shape {entry.shape}, expected (..., {width}): pass {', '.join(slots)}",
                 name=label,

@@ -2,60 +2,15 @@
 
 from __future__ import annotations
 
-import enum
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.joints.base import Coordinate, JointType
 from rttrr_pin.errors import InputError
-
-
-class JointType(enum.StrEnum):
-    """How a joint moves; the values are URDF's words."""
-
-    REVOLUTE = "revolute"
-    CONTINUOUS = "continuous"
-    PRISMATIC = "prismatic"
-    PLANAR = "planar"
-    FLOATING = "floating"
-    FIXED = "fixed"
-
-    @property
-    def rotates(self) -> bool:
-        """Whether it has one coordinate, and that is an angle."""
-        return self in (JointType.REVOLUTE, JointType.CONTINUOUS)
-
-    @property
-    def q_slots(self) -> tuple[str, ...]:
-        """What its coordinates are called; one nameless slot where there is one."""
-        return Q_SLOTS.get(self, ("",))
-
-    @property
-    def v_slots(self) -> tuple[str, ...]:
-        """What its rates, accelerations and driving forces are called."""
-        return V_SLOTS.get(self, ("",))
-
-    @property
-    def rotations(self) -> tuple[bool, ...]:
-        """For each rate, whether it is of an angle [rad]; else it is of a length [m]."""
-        return tuple(slot.startswith(("r", "theta")) or (not slot and self.rotates) for slot in self.v_slots)
-
-
-Q_SLOTS = {
-    JointType.PLANAR: ("x", "y", "theta"),
-    JointType.FLOATING: ("x", "y", "z", "qx", "qy", "qz", "qw"),
-    JointType.FIXED: (),
-}
-"""Coordinates of joints that have not just one: position [m], angle [rad], unit quaternion."""
-
-V_SLOTS = {
-    JointType.PLANAR: ("x", "y", "theta"),
-    JointType.FLOATING: ("x", "y", "z", "rx", "ry", "rz"),
-    JointType.FIXED: (),
-}
-"""Rates of the same: a twist in the child frame, linear before angular, as Pinocchio has it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,14 +97,16 @@ class Joint:
     def __post_init__(self) -> None:
         for name, shape in (("R", (3, 3)), ("p", (3,)), ("axis", (3,))):
             object.__setattr__(self, name, frozen(getattr(self, name), shape, f"{name} of joint {self.name!r}"))
-        if self.type in AXIAL and abs(np.linalg.norm(self.axis) - 1.0) > 1e-9:
+        if self.type.has_axis and abs(np.linalg.norm(self.axis) - 1.0) > 1e-9:
             raise InputError(
                 f"axis of joint {self.name!r} is {self.axis.tolist()}, of length {np.linalg.norm(self.axis):.6g}; "
                 "expected a unit vector: divide it by its length"
             )
-        if self.type is JointType.PLANAR and self.axis.tolist() != [0.0, 0.0, 1.0]:
+        direction = self.type.axis_direction
+        if direction is not None and tuple(self.axis) != direction:
             raise InputError(
-                f"axis of planar joint {self.name!r} is {self.axis.tolist()}, expected [0, 0, 1]: turn the joint by R"
+                f"axis of {self.type} joint {self.name!r} is {self.axis.tolist()}, "
+                f"expected {[int(x) for x in direction]}: turn the joint by R"
             )
         if not np.allclose(self.R @ self.R.T, np.eye(3), rtol=0.0, atol=1e-9) or np.linalg.det(self.R) < 0.0:
             raise InputError(f"R of joint {self.name!r} is {self.R.tolist()}: expected a rotation")
@@ -157,12 +114,12 @@ class Joint:
     @property
     def nq(self) -> int:
         """The number of its coordinates, its own or those it takes from the joint it follows."""
-        return len(self.type.q_slots)
+        return self.type.nq
 
     @property
     def nv(self) -> int:
         """The number of its rates."""
-        return len(self.type.v_slots)
+        return self.type.nv
 
     @property
     def independent(self) -> bool:
@@ -171,15 +128,14 @@ class Joint:
 
     def q_labels(self) -> list[str]:
         """Names of its coordinates: its own name, with the slot behind where there are several."""
-        return [f"{self.name}.{slot}" if slot else self.name for slot in self.type.q_slots]
+        return self._labels(self.type.coordinates)
 
     def v_labels(self) -> list[str]:
         """Names of its rates."""
-        return [f"{self.name}.{slot}" if slot else self.name for slot in self.type.v_slots]
+        return self._labels(self.type.rates)
 
-
-AXIAL = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
-"""Joints that have an axis and one coordinate."""
+    def _labels(self, coordinates: Sequence[Coordinate]) -> list[str]:
+        return [f"{self.name}.{own.name}" if own.name else self.name for own in coordinates]
 
 
 def frozen(values: Array, shape: tuple[int, ...], name: str) -> Array:

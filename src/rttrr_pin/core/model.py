@@ -10,11 +10,13 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import accumulate
 
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.joint import Joint, JointEffects, JointType, frozen
+from rttrr_pin.core.joint import Joint, JointEffects, frozen
+from rttrr_pin.core.joints import FLOATING
 from rttrr_pin.errors import InputError, UnknownNameError
 
 STANDARD_GRAVITY = (0.0, 0.0, -9.81)
@@ -121,6 +123,12 @@ class Model:
         """The number of degrees of freedom: the length of v, a, tau."""
         return sum(joint.nv for joint in self.moving)
 
+    @cached_property
+    def quaternions(self) -> tuple[int, ...]:
+        """Where in q each unit quaternion (x, y, z, w) begins."""
+        begins = accumulate((joint.nq for joint in self.moving), initial=0)
+        return tuple(at + k for at, joint in zip(begins, self.moving, strict=False) for k in joint.type.quaternions)
+
     @property
     def link_names(self) -> tuple[str, ...]:
         """The names along the links axis of F, N, f, n (the root is not among them)."""
@@ -170,7 +178,7 @@ class Model:
         Its coordinates are Pinocchio's: position and quaternion (x, y, z, w) of the root link in the world, its rates
         the twist in the root link's frame, linear before angular.
         """
-        base = Joint(ROOT_JOINT, JointType.FLOATING)
+        base = Joint(ROOT_JOINT, FLOATING)
         moved = [
             replace(
                 joint, parent=joint.parent + 1, mimic=joint.mimic and replace(joint.mimic, joint=joint.mimic.joint + 1)

@@ -1,11 +1,11 @@
-"""The specification: Newton-Euler iterations outwards and inwards, written once, over scalars of any kind.
+"""The reference recursion: Newton-Euler iterations outwards and inwards, written once, over scalars of any kind.
 
 Source: Detesan, "The dynamic model of RTTRR serial robot - Iterations outwards and inwards the robot's mechanical
 structure", Acta Technica Napocensis (the paper); Craig, "Introduction to Robotics", section 6.5, for the general
 form. Equation numbers are the paper's; what a line yields for the RTTRR arm is said beside it.
 
-Nothing here asks what its scalars are: the same lines run on floats, on arrays (one batch in each scalar), on
-(value, bound) pairs, on balls, on symbols. It never divides, compares or takes a root.
+The same lines run on floats, arrays (one batch in each scalar), values with error bounds, intervals, dual numbers and
+polynomials. Nothing here asks what its scalars are, and nothing divides, compares or takes a root.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from rttrr_pin.core.algebra import ZERO, Matrix, Scalar, Vector
-from rttrr_pin.core.joint_motion import DRIVING_FORCE, MOTION, Body, JointMotion, JointState, SinCos
+from rttrr_pin.core.joints.base import Body, JointMotion, JointState
+from rttrr_pin.core.rotations import SinCos
 
 Keep = Callable[[Vector], Vector]
 Call = Callable[..., Any]
@@ -83,8 +84,8 @@ def newton_euler(
         gravity: the gravity field in the base frame [m/s^2].
         payloads: what the robot exerts on its surroundings.
         sincos: sine and cosine for this kind of scalar.
-        keep: is shown each w, w_dot, v_dot, F, N, f, n once complete, and returns what stands for it from there on.
-        call: takes each step on a link; one that sees the same step coming again may have it compiled once.
+        keep: gets each w, w_dot, v_dot, F, N, f, n once complete, and returns what is used in its place from there on.
+        call: runs each step on a link; a compiler may compile equal steps once.
 
     Returns:
         F, N, f, n of each link in its own frame, and tau of each joint.
@@ -122,19 +123,18 @@ def outwards(
     body: Body, state: JointState, parent: LinkMotion, sincos: SinCos, keep: Keep
 ) -> tuple[JointMotion, LinkMotion, Vector, Vector]:
     """A step outwards: from the motion of the parent to that of link i, and to F_i, N_i."""
-    joint = MOTION[body.type](body, state, sincos)
+    joint = body.type.motion(body, state, sincos)
     R, p, r_C = joint.R, joint.p, body.r_C
     w_p, w_dot_p, v_dot_p = parent.w, parent.w_dot, parent.v_dot
     carried = R.T @ w_p  # the parent's angular velocity, in the link's frame
     w = keep(carried + joint.w)
     w_dot = keep(R.T @ w_dot_p + carried.cross(joint.w) + joint.w_dot)
-    v_dot = (
+    v_dot = keep(
         R.T @ (w_dot_p.cross(p) + w_p.cross(w_p.cross(p)) + v_dot_p)
         + carried.cross(joint.v) * 2
         + joint.w.cross(joint.v)  # of joints that turn and slide at once
         + joint.v_dot
     )
-    v_dot = keep(v_dot)
     v_dot_C = w_dot.cross(r_C) + w.cross(w.cross(r_C)) + v_dot  # (9)-(15)
     F = keep(v_dot_C * body.M)  # (16)-(22)
     N = keep(body.I @ w_dot + w.cross(body.I @ w))  # (23)-(30)
@@ -147,7 +147,7 @@ def inwards(
     """A step inwards: from what link i must pass on to f_i, n_i and tau_i, and to their f, n at the parent's origin."""
     f = keep(F + f_on)  # (31)-(43)
     n = keep(N + n_on + body.r_C.cross(F))  # the moments that the paper leaves out before (31)
-    tau = DRIVING_FORCE[body.type](body, f, n)  # Qm_i; Qm_2 is (40)
+    tau = body.type.driving_force(body, f, n)  # Qm_i; Qm_2 is (40)
     R_f = joint.R @ f
     return f, n, tau, R_f, joint.R @ n + joint.p.cross(R_f)
 

@@ -10,8 +10,7 @@ from collections.abc import Sequence
 
 from rttrr_pin.core.algebra import Scalar
 from rttrr_pin.core.dual import Dual, value_of
-from rttrr_pin.core.joint import Joint, JointType
-from rttrr_pin.core.joint_motion import quaternion_rotation
+from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.scalars import Arithmetic
 
 TIME = 0
@@ -47,34 +46,9 @@ def tangent(joints: Sequence[Joint], q: Sequence[Scalar], arithmetic: Arithmetic
     duals: list[Dual] = []
     at, k = 0, 0
     for joint in joints:
-        own = q[at : at + joint.nq]
-        if joint.type is JointType.FLOATING:
-            duals += _floating_tangent(own, k)
-        elif joint.type is JointType.PLANAR:
-            duals += _planar_tangent(own, k, arithmetic)
-        else:
-            duals += [Dual(x, {k + i: 1.0}) for i, x in enumerate(own)]
+        duals += joint.type.tangent(q[at : at + joint.nq], k, arithmetic.sincos)
         at, k = at + joint.nq, k + joint.nv
     return duals
-
-
-def _planar_tangent(own: Sequence[Scalar], k: int, arithmetic: Arithmetic) -> list[Dual]:
-    """With x' = c v_x - s v_y, y' = s v_x + c v_y and theta' = w_z for directions k to k + 2."""
-    x, y, theta = own
-    s, c = arithmetic.sincos(theta)
-    return [Dual(x, {k: c, k + 1: -s}), Dual(y, {k: s, k + 1: c}), Dual(theta, {k + 2: 1.0})]
-
-
-def _floating_tangent(own: Sequence[Scalar], k: int) -> list[Dual]:
-    """With p' = R v and (x, y, z, w)' = (x, y, z, w) (w_x, w_y, w_z, 0) / 2 for directions k (v_x) to k + 5 (w_z)."""
-    x, y, z, w = own[3:]
-    R = quaternion_rotation(x, y, z, w)
-    position = [Dual(p, {k + i: r for i, r in enumerate(row)}) for p, row in zip(own[:3], R.rows, strict=True)]
-    turns = ((w, -z, y), (z, w, -x), (-y, x, w), (-x, -y, -z))
-    quaternion = [
-        Dual(c, {k + 3 + i: t * 0.5 for i, t in enumerate(turn)}) for c, turn in zip((x, y, z, w), turns, strict=True)
-    ]
-    return position + quaternion
 
 
 def over_duals(arithmetic: Arithmetic) -> Arithmetic:

@@ -9,7 +9,7 @@ from functools import cached_property
 
 from rttrr_pin.core.algebra import Matrix, Scalar, Vector
 from rttrr_pin.core.joint import Joint
-from rttrr_pin.core.joint_motion import Body
+from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.newton_euler import Payload
 from rttrr_pin.core.scalars import ROTATION_ERROR
@@ -151,6 +151,7 @@ class SymbolicRobot:
             I=Matrix(
                 tuple(self._vector("inertia", (i, x), row) for x, row in enumerate(link.inertia))  # type: ignore[arg-type]
             ),
+            parameters=tuple(exact(x) for x in joint.type.parameters),
         )
 
     def _vector(self, kind: str, place: tuple[int, ...], values: Iterable[float]) -> Vector:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 from rttrr_pin.core.algebra import ZERO, Matrix, Vector
 from rttrr_pin.core.dynamics import Result, dynamics
-from rttrr_pin.core.joint_motion import Body
+from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.newton_euler import Keep
 from rttrr_pin.core.scalars import Arithmetic
 from rttrr_pin.derivation.chain import SymbolicRobot

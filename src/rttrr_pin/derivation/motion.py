@@ -8,6 +8,9 @@ from dataclasses import dataclass
 from rttrr_pin.core.model import Model
 from rttrr_pin.derivation.symbols import LENGTH, NUMBER, Dimension, Role, Symbol
 
+DIMENSIONS = {"rad": None, "m": LENGTH, "": NUMBER}
+"""The dimension of a coordinate by its unit; None for an angle."""
+
 
 @dataclass(frozen=True, slots=True)
 class Angle:
@@ -46,11 +49,7 @@ def angle_places(model: Model) -> Iterator[int]:
 def _coordinates(model: Model) -> Iterator[Dimension | None]:
     """The dimension of each coordinate; None for an angle."""
     for joint in model.moving:
-        for slot in joint.type.q_slots:
-            if slot == "theta" or (not slot and joint.type.rotates):
-                yield None
-            else:
-                yield NUMBER if slot.startswith("q") else LENGTH
+        yield from (DIMENSIONS[own.unit] for own in joint.type.coordinates)
 
 
 def first_coordinate(model: Model, joint: int) -> int:

@@ -16,9 +16,10 @@ from typing import Any, Literal
 import numpy as np
 
 from rttrr_pin.core.algebra import Matrix, Scalar, Vector
-from rttrr_pin.core.joint import AXIAL, Joint, JointEffects, JointType, Mimic
-from rttrr_pin.core.joint_motion import Body, rotation
+from rttrr_pin.core.joint import Joint, JointEffects, Mimic
+from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
+from rttrr_pin.core.rotations import rotation
 from rttrr_pin.core.scalars import Arithmetic
 from rttrr_pin.errors import InputError
 from rttrr_pin.urdf.document import parse_xml
@@ -199,7 +200,7 @@ def _differences(model: Model, links: Sequence[WrittenLink], joints: Sequence[Wr
         if not (
             joint.p.tolist() == [float(x) for x in own.xyz]
             and np.allclose(R, joint.R, rtol=0.0, atol=CLOSE)
-            and (joint.type not in AXIAL or along)
+            and (not joint.type.has_axis or along)
         ):
             yield f"joint {joint.name!r}"
 
@@ -238,13 +239,14 @@ def _body(
         M=number(link.mass),
         r_C=Vector(*map(number, link.com)),
         I=I,
+        parameters=tuple(number(Fraction(x)) for x in joint.type.parameters),
     )
 
 
 def _axis(joint: Joint, own: WrittenJoint, number: Callable[[Fraction], Scalar], inverse_root: InverseRoot) -> Vector:
     """The axis divided by its length; a rational where the length is one."""
-    if joint.type not in AXIAL:
-        return Vector(number(Fraction(0)), number(Fraction(0)), number(Fraction(joint.type is JointType.PLANAR)))
+    if not joint.type.has_axis:
+        return Vector(*(number(Fraction(x)) for x in joint.type.axis_direction or (0, 0, 0)))
     square = sum((x * x for x in own.axis), Fraction(0))
     length = Fraction(isqrt(square.numerator), isqrt(square.denominator))
     if length * length == square:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from rttrr_pin.core.algebra import Scalar, Vector
 from rttrr_pin.core.dynamics import dynamics
-from rttrr_pin.core.joint_motion import Body
+from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.newton_euler import Payload
 from rttrr_pin.core.scalars import Arithmetic

@@ -23,7 +23,6 @@ import numpy as np
 from rttrr_pin.core.algebra import Scalar, Vector
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dynamics import dynamics
-from rttrr_pin.core.joint import JointType
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load, payloads_of
 from rttrr_pin.core.scalars import SINE_ULPS, SLACK, UNIT_ROUNDOFF, Arithmetic, columns
@@ -138,13 +137,10 @@ def coordinate_scalars(model: Model, q: Array) -> list[Bounded]:
         q: coordinates, (N, nq) [rad or m].
     """
     scalars = [Bounded(column, 0.0) for column in columns(q)]
-    at = 0
-    for joint in model.moving:
-        if joint.type is JointType.FLOATING:
-            quaternion = scalars[at + 3 : at + 7]
-            defect = abs(sum(c.value * c.value for c in quaternion) - 1.0) + 8 * UNIT_ROUNDOFF
-            scalars[at + 3 : at + 7] = [Bounded(c.value, abs(c.value) * defect) for c in quaternion]
-        at += joint.nq
+    for at in model.quaternions:
+        quaternion = scalars[at : at + 4]
+        defect = abs(sum(c.value * c.value for c in quaternion) - 1.0) + 8 * UNIT_ROUNDOFF
+        scalars[at : at + 4] = [Bounded(c.value, abs(c.value) * defect) for c in quaternion]
     return scalars
 
 

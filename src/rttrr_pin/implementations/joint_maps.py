@@ -12,7 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.joint import JointEffects, JointType, Mimic
+from rttrr_pin.core.joint import JointEffects, Mimic
+from rttrr_pin.core.joints import JointType
 from rttrr_pin.core.model import Model
 
 

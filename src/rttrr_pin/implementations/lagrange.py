@@ -17,7 +17,7 @@ that follows another has the followed joint's rate times its multiplier, which t
 Source: Greenwood, "Advanced Dynamics", 2003, sections 2.2 and 4.1 (Boltzmann-Hamel); Lamb, "Hydrodynamics", article
 124.
 
-It shares nothing with the recursion but the motion of single joints (`joint_motion`): no acceleration of a link, no
+It shares nothing with the recursion but the motion of single joints (`JointType.motion`): no acceleration of a link, no
 force on one. So it gives tau alone.
 """
 
@@ -34,7 +34,7 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dual import Dual, part_of, value_of
 from rttrr_pin.core.dynamics import bodies, joint_states
 from rttrr_pin.core.energy import drive_power, gyroscopic, kinetic_energy, moving_links, payload_power, potential_energy
-from rttrr_pin.core.joint_motion import Body
+from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load, payloads_of
 from rttrr_pin.core.scalars import Arithmetic, columns

@@ -31,7 +31,7 @@ import mujoco
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.joint import JointType
+from rttrr_pin.core.joints import FLOATING, PLANAR, JointType
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import QUANTITIES, LinkWrenches
@@ -205,7 +205,7 @@ class Motion:
         motion = cls(np.empty((rows, compiled.nq)), np.empty((rows, compiled.nv)), np.empty((rows, compiled.nv)), {})
         for joint in joints:
             q_, v_, a_ = joint.own(q, v, a)
-            if joint.type is JointType.FLOATING:
+            if joint.type == FLOATING:
                 q_ = q_[:, [0, 1, 2, 6, 3, 4, 5]]
             turned = _turn(joint.type, q_)
             if turned is not None:
@@ -227,9 +227,9 @@ class Motion:
 
 def _turn(kind: JointType, q: Array) -> Array | None:
     """The rotation of a planar or floating joint, (N, 3, 3), from MuJoCo's coordinates; None of another."""
-    if kind is JointType.PLANAR:
+    if kind == PLANAR:
         half = np.stack([np.cos(q[:, 2] / 2), 0 * q[:, 2], 0 * q[:, 2], np.sin(q[:, 2] / 2)], axis=1)
-    elif kind is JointType.FLOATING:
+    elif kind == FLOATING:
         half = q[:, 3:]
     else:
         return None
@@ -239,7 +239,7 @@ def _turn(kind: JointType, q: Array) -> Array | None:
 def _slides(kind: JointType, turned: Array, v: Array, a: Array) -> tuple[Array, Array]:
     """Rates and accelerations with the linear part along the frame at zero: R v and R (a + w x v)."""
     linear = kind.rotations.index(True)
-    w = v[:, linear:] if kind is JointType.FLOATING else np.pad(v[:, linear:], ((0, 0), (2, 0)))
+    w = v[:, linear:] if kind == FLOATING else np.pad(v[:, linear:], ((0, 0), (2, 0)))
     v_l, a_l = _in_space(v[:, :linear]), _in_space(a[:, :linear])
     v_out = product(turned, v_l)[:, :linear]
     a_out = product(turned, a_l + np.cross(w, v_l))[:, :linear]

@@ -26,7 +26,8 @@ import numpy as np
 from lxml import etree
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.joint import AXIAL, Joint, JointType
+from rttrr_pin.core.joint import Joint
+from rttrr_pin.core.joints import CONTINUOUS, FIXED, FLOATING, PLANAR, PRISMATIC, REVOLUTE
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.errors import ModelMismatchError, OracleError
 from rttrr_pin.implementations import urdf_of
@@ -47,16 +48,16 @@ TURNS_TENSORS = tuple(int(part) for part in mujoco.__version__.split(".")[:2]) >
 SLIDE, HINGE, INTERVAL = mujoco.mjtJoint.mjJNT_SLIDE, mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_BALL
 
 MADE_OF = {
-    JointType.REVOLUTE: (HINGE,),
-    JointType.CONTINUOUS: (HINGE,),
-    JointType.PRISMATIC: (SLIDE,),
-    JointType.PLANAR: (SLIDE, SLIDE, HINGE),
-    JointType.FLOATING: (SLIDE, SLIDE, SLIDE, INTERVAL),
-    JointType.FIXED: (),
+    REVOLUTE: (HINGE,),
+    CONTINUOUS: (HINGE,),
+    PRISMATIC: (SLIDE,),
+    PLANAR: (SLIDE, SLIDE, HINGE),
+    FLOATING: (SLIDE, SLIDE, SLIDE, INTERVAL),
+    FIXED: (),
 }
 """MuJoCo's joints that make one of ours, in the order in which they move their body."""
 
-PARTS = {JointType.PLANAR: ("_TX", "_TY", "_RZ"), JointType.FIXED: ()}
+PARTS = {PLANAR: ("_TX", "_TY", "_RZ"), FIXED: ()}
 """What MuJoCo appends to the name of a joint that it makes of several, and of one that it does not make."""
 
 
@@ -204,14 +205,14 @@ def _joint_differences(model: Model, joint: Joint, body: Any) -> Iterator[str]:
         yield f"{here}: hangs on {body.parent.name.removeprefix(PREFIX)!r}, the file says {parent!r}"
     yield from differs(f"{here} placement R", joint.R, rotation_of(body.quat), 1.0)
     yield from differs(f"{here} placement p", joint.p, body.pos)
-    made_of = MADE_OF[joint.type] if joint.type is not JointType.FLOATING else (mujoco.mjtJoint.mjJNT_FREE,)
+    made_of = MADE_OF[joint.type] if joint.type != FLOATING else (mujoco.mjtJoint.mjJNT_FREE,)
     kinds, names = tuple(theirs.type for theirs in body.joints), [theirs.name for theirs in body.joints]
     if names != [joint.name + END + part for part in PARTS.get(joint.type, ("",))]:
         carried_by = ", ".join(name.replace(END, "") for name in names) or "no joint"
         yield f"link {body.name.removeprefix(PREFIX)!r}: carried by {carried_by}, the file says {joint.name}"
     elif kinds != made_of:
         yield f"{here}: made of {', '.join(map(str, kinds)) or 'none'}, the file says {joint.type}"
-    elif joint.type in AXIAL:
+    elif joint.type.has_axis:
         (theirs,) = body.joints
         yield from differs(f"{here} axis", joint.axis, unit(theirs.axis), 1.0)
         yield from _limit_differences(here, joint, theirs)
@@ -223,7 +224,7 @@ def _limit_differences(here: str, joint: Joint, theirs: Any) -> Iterator[str]:
     yield from differs(f"{here} damping", joint.dynamics.damping, np.ravel(theirs.damping)[0])
     yield from differs(f"{here} friction", joint.dynamics.friction, theirs.frictionloss)
     compared = [("effort limit", limits.effort, theirs.actfrcrange[1])] if limits.effort > 0.0 else []
-    if joint.type is not JointType.CONTINUOUS:
+    if joint.type.limits != "none":
         compared += [("lower limit", limits.lower, theirs.range[0]), ("upper limit", limits.upper, theirs.range[1])]
     for what, ours, number in compared:
         if np.isfinite(ours):
@@ -252,7 +253,7 @@ def _prepare(spec: Any, model: Model, bodies: dict[str, Any]) -> None:
     for equality in list(spec.equalities):
         spec.delete(equality)
     for joint, link in zip(model.joints, model.links, strict=True):
-        if joint.type is JointType.FLOATING:
+        if joint.type == FLOATING:
             _make_floating(bodies[PREFIX + link.name])
     for body in bodies.values():
         if body.name.startswith(PREFIX):
@@ -267,9 +268,7 @@ def _make_floating(body: Any) -> None:
     """Slides along x, y, z and a ball in place of the free joint, if there is one."""
     first = body.joints[0] if body.joints else body.add_joint()
     parts = [first, *(body.add_joint() for _ in range(3))]
-    for part, kind, axis in zip(
-        parts, MADE_OF[JointType.FLOATING], [*np.eye(3), np.array([0.0, 0.0, 1.0])], strict=True
-    ):
+    for part, kind, axis in zip(parts, MADE_OF[FLOATING], [*np.eye(3), np.array([0.0, 0.0, 1.0])], strict=True):
         part.type, part.axis = kind, axis
 
 

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.joint import JointType
+from rttrr_pin.core.joints import CONTINUOUS, PLANAR
 from rttrr_pin.core.model import Model
 from rttrr_pin.implementations.joint_maps import OracleJoint, friction, own_slices
 
@@ -63,7 +63,7 @@ def expand(joints: Sequence[PinJoint], pin_model: Any, q: Array, v: Array, a: Ar
     motion = Motion(np.empty((rows, pin_model.nq)), np.empty((rows, pin_model.nv)), np.empty((rows, pin_model.nv)))
     for joint in joints:
         q_, v_, a_ = joint.own(q, v, a)
-        if joint.type in (JointType.CONTINUOUS, JointType.PLANAR):
+        if joint.type in (CONTINUOUS, PLANAR):
             angle = q_[:, -1:]
             q_ = np.hstack([q_[:, :-1], np.cos(angle), np.sin(angle)])
         motion.q[:, joint.q], motion.v[:, joint.v], motion.a[:, joint.v] = q_, v_, a_
@@ -85,8 +85,8 @@ def driving_forces(joints: Sequence[PinJoint], tau: Array, motion: Motion) -> tu
 def reach(joints: Sequence[PinJoint], pin_model: Any, motion: Motion) -> Array:
     """At most how far each joint's origin is from that of the joint further in, (N, njoints) [m]."""
     out = np.tile([np.linalg.norm(x.translation) for x in pin_model.jointPlacements], (len(motion.q), 1))
-    lengths = {JointType.PRISMATIC: 1, JointType.PLANAR: 2, JointType.FLOATING: 3}
     for joint in joints:
-        moved = motion.q[:, joint.q][:, : lengths.get(joint.type, 0)]
+        lengths = sum(own.unit == "m" for own in joint.type.coordinates)  # they come first
+        moved = motion.q[:, joint.q][:, :lengths]
         out[:, joint.id] += np.linalg.norm(moved, axis=1)
     return out

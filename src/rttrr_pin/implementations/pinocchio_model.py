@@ -10,7 +10,8 @@ import numpy as np
 import pinocchio as pin
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.joint import AXIAL, Joint, JointType
+from rttrr_pin.core.joint import Joint
+from rttrr_pin.core.joints import FLOATING
 from rttrr_pin.core.model import Model
 from rttrr_pin.implementations.model_comparison import differs
 
@@ -67,7 +68,7 @@ def pin_links(model: Model, pin_model: Any) -> list[PinLink]:
     """
     links = []
     for i, (joint, link) in enumerate(zip(model.joints, model.links, strict=True)):
-        fixed = joint.type is JointType.FIXED
+        fixed = joint.nv == 0
         frame = pin_model.frames[pin_model.getFrameId(link.name, pin.FrameType.BODY)]
         if fixed:
             inertia = pin_model.frames[pin_model.getFrameId(joint.name, pin.FrameType.FIXED_JOINT)].inertia
@@ -107,7 +108,7 @@ def _joint_differences(model: Model, pin_model: Any, data: Any, joint: Joint, i:
     """Placement, axis and limits of a joint; mass, centre and tensor of what it carries."""
     R, p, ancestor = _placement_on_moving(model, i)
     here, link = f"joint {joint.name!r}", f"link {model.links[i].name!r}"
-    if joint.type is JointType.FIXED:
+    if not joint.nv:
         at = pin_model.getFrameId(joint.name, pin.FrameType.FIXED_JOINT)
         frame = pin_model.frames[at]
         yield from differs(f"{here} placement R", R, frame.placement.rotation, 1.0)
@@ -154,7 +155,7 @@ def _inertia_differences(link: str, ours: tuple[float, Array, Array], theirs: An
 
 def _limit_differences(here: str, joint: Joint, pin_model: Any, at: int) -> Iterator[str]:
     """Limits, where the file sets them (a continuous joint has none on its angle), damping and friction."""
-    if joint.type not in AXIAL:
+    if not joint.type.has_axis:
         return
     limits, v, q = joint.limits, pin_model.joints[at].idx_v, pin_model.joints[at].idx_q
     compared = [
@@ -163,7 +164,7 @@ def _limit_differences(here: str, joint: Joint, pin_model: Any, at: int) -> Iter
     ]
     yield from differs(f"{here} damping", joint.dynamics.damping, pin_model.damping[v])
     yield from differs(f"{here} friction", joint.dynamics.friction, pin_model.upperDryFrictionLimit[v])
-    if joint.type is not JointType.CONTINUOUS:
+    if joint.type.limits != "none":
         compared += [
             ("lower limit", limits.lower, pin_model.lowerPositionLimit[q]),
             ("upper limit", limits.upper, pin_model.upperPositionLimit[q]),
@@ -175,9 +176,9 @@ def _limit_differences(here: str, joint: Joint, pin_model: Any, at: int) -> Iter
 
 def _subspace(joint: Joint) -> Array:
     """The joint's motion per unit rate, linear before angular: (6,), or (6, nv) where there are several rates."""
-    if joint.type in AXIAL:
+    if joint.type.has_axis:
         return np.concatenate([np.zeros(3), joint.axis] if joint.type.rotates else [joint.axis, np.zeros(3)])
-    return np.eye(6) if joint.type is JointType.FLOATING else _with_axis(joint.axis)
+    return np.eye(6) if joint.type == FLOATING else _with_axis(joint.axis)
 
 
 def _with_axis(axis: Array) -> Array:
@@ -192,7 +193,7 @@ def _placement_on_moving(model: Model, i: int) -> tuple[Array, Array, int]:
     """R, p of joint i on the nearest link further in that a moving joint carries, and that link's index (-1: root)."""
     joint = model.joints[i]
     R, p, k = joint.R, joint.p, joint.parent
-    while k >= 0 and model.joints[k].type is JointType.FIXED:
+    while k >= 0 and model.joints[k].nv == 0:
         R, p = model.joints[k].R @ R, model.joints[k].p + model.joints[k].R @ p
         k = model.joints[k].parent
     return R, p, k
@@ -200,7 +201,7 @@ def _placement_on_moving(model: Model, i: int) -> tuple[Array, Array, int]:
 
 def _merged(model: Model, i: int) -> list[int]:
     """The links that fixed joints hold to link i, which a moving joint carries."""
-    fixed = (k for k, joint in enumerate(model.joints) if joint.type is JointType.FIXED)
+    fixed = (k for k, joint in enumerate(model.joints) if joint.nv == 0)
     return [k for k in fixed if _placement_on_moving(model, k)[2] == i]
 
 

@@ -24,7 +24,6 @@ from rttrr_pin.core.energy import (
     rate_of,
     spin,
 )
-from rttrr_pin.core.joint_motion import MOTION
 from rttrr_pin.core.tangent import TIME
 from rttrr_pin.laws.case import Case
 
@@ -42,7 +41,7 @@ def kinematics(case: Case) -> Iterator[Scalar]:
     q, v = case.flow
     states = joint_states(case.model, case.duals, q, v, case.a)
     for body, state in zip(case.links, states, strict=True):
-        joint = MOTION[body.type](body, state, case.duals.sincos)
+        joint = body.type.motion(body, state, case.duals.sincos)
         turned = joint.R @ Matrix.skew(joint.w)
         for row, expected in zip(joint.R.rows, turned.rows, strict=True):
             yield from rate_of(row) - now(expected)

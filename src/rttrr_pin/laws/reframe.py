@@ -12,13 +12,9 @@ from dataclasses import dataclass, replace
 
 from rttrr_pin.core.algebra import IDENTITY, ZERO, Matrix, Vector
 from rttrr_pin.core.dynamics import Result
-from rttrr_pin.core.joint import JointType
-from rttrr_pin.core.joint_motion import Body
+from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.newton_euler import Payload
 from rttrr_pin.laws.case import Case
-
-ANYWHERE = (JointType.PRISMATIC, JointType.FIXED)
-TURNING = (JointType.REVOLUTE, JointType.CONTINUOUS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,12 +30,8 @@ def reframing(case: Case, turn: Matrix) -> list[Frame]:
     offset = Vector.of((0.25, -0.5, 0.125), lambda value: case.arithmetic.number(value, 0.0))
     frames = []
     for body in case.links:
-        if body.type in ANYWHERE:
-            frames.append(Frame(turn, offset))
-        elif body.type in TURNING:
-            frames.append(Frame(turn, body.axis * offset.x))
-        else:
-            frames.append(Frame(IDENTITY, ZERO))
+        shift = body.type.origin_shift(body.axis, offset)
+        frames.append(Frame(IDENTITY, ZERO) if shift is None else Frame(turn, shift))
     return frames
 
 

@@ -11,8 +11,9 @@ from dataclasses import replace
 
 from rttrr_pin.core.algebra import IDENTITY, ZERO, Matrix, Scalar, Vector
 from rttrr_pin.core.dynamics import Result
-from rttrr_pin.core.joint_motion import Body, rotation
+from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.newton_euler import Payload
+from rttrr_pin.core.rotations import rotation
 from rttrr_pin.core.wrench import LINK_QUANTITIES
 from rttrr_pin.laws.case import Case
 from rttrr_pin.laws.reframe import reframed, reframing

@@ -13,7 +13,7 @@ import re
 from collections import Counter
 from typing import Any
 
-from rttrr_pin.core.joint import JointType
+from rttrr_pin.core.joints import JOINT_TYPES, JointType
 from rttrr_pin.errors import UrdfError, nearest, shortened
 from rttrr_pin.urdf.vocabulary import ATTRIBUTES, check_words
 
@@ -27,10 +27,7 @@ INERTIA_ENTRIES = ATTRIBUTES["inertia"]
 
 LIMITS = ATTRIBUTES["limit"]
 
-SUPPORTED = tuple(JointType)
-
-FOLLOWABLE = (JointType.REVOLUTE, JointType.CONTINUOUS, JointType.PRISMATIC)
-"""Types of joints that can follow another, or be followed."""
+SUPPORTED = tuple(JOINT_TYPES)
 
 LONGEST_CHAIN = 100
 """Joints that follow one another; to follow a chain takes time with the square of its length."""
@@ -165,20 +162,21 @@ def _check_joint(joint: Element) -> None:
         raise joint.error(f"type {kind!r} is not supported: {nearest(kind, SUPPORTED)}")
     _check_origin(joint)
     _check_dynamics(joint)
-    if kind in (JointType.FIXED, JointType.FLOATING):
+    joint_type = JOINT_TYPES[kind]
+    if not joint_type.has_axis and joint_type.axis_direction is None:
         _check_unused(joint)
         return
     axis = joint.needed("axis", 'which a joint that moves needs: write <axis xyz="..."/>')
     if not any(axis.numbers("xyz", 3)):
         raise axis.error("its axis is 0 0 0, which has no direction: write a unit vector")
-    if kind == JointType.PLANAR and not (axis.numbers("xyz", 3)[:2] == [0.0, 0.0] and axis.numbers("xyz", 3)[2] > 0.0):
+    if joint_type.axis_direction and not (axis.numbers("xyz", 3)[:2] == [0.0, 0.0] and axis.numbers("xyz", 3)[2] > 0.0):
         raise axis.error(
             "the axis of a planar joint is not along +z: URDF does not say which directions x and y then are; "
             "turn the joint by the rpy of its <origin> instead"
         )
     limit = joint.child("limit")
     if limit is not None:
-        _check_limit(joint, limit, kind)
+        _check_limit(limit, joint_type)
 
 
 def _check_unused(joint: Element) -> None:
@@ -204,7 +202,7 @@ def _check_mimics(joints: list[Element]) -> None:
     by_name = {joint.xml.get("name"): joint for joint in joints}
     for joint in joints:
         mimic = joint.child("mimic")
-        if mimic is None or joint.xml.get("type") == JointType.FIXED:
+        if mimic is None or JOINT_TYPES[joint.xml.get("type")].nv == 0:
             continue
         for key in ("multiplier", "offset"):
             mimic.numbers(key, 1, "0")
@@ -214,7 +212,7 @@ def _check_mimics(joints: list[Element]) -> None:
             if target not in by_name:
                 raise mimic.error(f"follows joint {target!r}, which does not exist: {nearest(target, by_name)}")
             for name in (seen[-1], target):
-                if by_name[name].xml.get("type") not in FOLLOWABLE:
+                if JOINT_TYPES[by_name[name].xml.get("type")].nq != 1:
                     raise mimic.error(
                         f"joint {name!r} is {by_name[name].xml.get('type')}: only joints with one coordinate follow"
                     )
@@ -228,12 +226,12 @@ def _check_mimics(joints: list[Element]) -> None:
             mimic = by_name[target].child("mimic")
 
 
-def _check_limit(joint: Element, limit: Element, kind: str) -> None:
+def _check_limit(limit: Element, joint_type: JointType) -> None:
     set_ = {key: limit.numbers(key, 1)[0] for key in LIMITS if key in limit.xml.attrib}
     for key in ("velocity", "effort"):
         if set_.get(key, 0.0) < 0.0:
             raise limit.error(f"{key} limit is {set_[key]}: expected a positive number")
-    if kind != JointType.CONTINUOUS and set_.get("lower", 0.0) > set_.get("upper", 0.0):
+    if joint_type.limits != "none" and set_.get("lower", 0.0) > set_.get("upper", 0.0):
         raise limit.error(
             f"lower limit {set_.get('lower', 0.0)} is above the upper one, {set_.get('upper', 0.0)}: exchange them"
         )

@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.joint import AXIAL, Joint, JointEffects, JointType, Limits, Mimic
+from rttrr_pin.core.joint import Joint, JointEffects, Limits, Mimic
+from rttrr_pin.core.joints import JOINT_TYPES, JointType
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.errors import InputError, UrdfError, shortened
 from rttrr_pin.urdf.checks import check_document
@@ -104,7 +105,7 @@ def _model(robot: Any, source: Source, document: Any) -> Model:
 
 def _mimic(joint: Any, ordered: Sequence[tuple[int, Any]], index: dict[str, int]) -> Mimic | None:
     """Whom a joint follows in the end: chains of mimics are multiplied out."""
-    if joint.mimic is None or joint.type == JointType.FIXED:
+    if joint.mimic is None or JOINT_TYPES[joint.type].nv == 0:
         return None
     factor, shift, links = Fraction(1), Fraction(0), 0  # exact, so that a chain is rounded once
     while joint.mimic is not None:
@@ -142,9 +143,9 @@ def _link(link: Any) -> Link:
 def _joint(joint: Any, parent: int, mimic: Mimic | None) -> Joint:
     """A joint on the link of index `parent`."""
     R, p = _placement(joint.origin)
-    kind = JointType(joint.type)
+    kind = JOINT_TYPES[joint.type]
     axis = np.asarray(joint.axis, dtype=float)
-    if kind in AXIAL or kind is JointType.PLANAR:
+    if kind.has_axis or kind.axis_direction:
         axis = np.ldexp(axis, -np.frexp(np.abs(axis).max())[1])  # exact, and the squares can no more overflow
         axis = axis / np.linalg.norm(axis)
     return Joint(
@@ -181,8 +182,8 @@ def _limits(limit: Any, kind: JointType) -> Limits:
     if limit is None:
         return Limits()
     set_ = {key: getattr(limit, key) for key in ("lower", "upper", "velocity", "effort")}
-    if kind in (JointType.REVOLUTE, JointType.PRISMATIC):
+    if kind.limits == "required":
         set_ |= {key: 0.0 for key in ("lower", "upper") if set_[key] is None}  # the format's own default
-    if kind is JointType.CONTINUOUS:
+    if kind.limits == "none":
         set_["lower"] = set_["upper"] = None
     return Limits(**{key: float(value) for key, value in set_.items() if value is not None})

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.inputs import whole_number
-from rttrr_pin.core.joint import Joint, JointType
+from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.errors import UnknownNameError
@@ -201,9 +201,7 @@ class Sampler:
         """One number for each degree of freedom as the joints' coordinates."""
         columns, at = [], 0
         for joint in self.model.moving:
-            own = q[:, at : at + joint.nv]
-            floating = joint.type is JointType.FLOATING
-            columns.append(np.hstack([own[:, :3], _quaternions(own[:, 3:])]) if floating else own)
+            columns.append(joint.type.coordinates_at(q[:, at : at + joint.nv]))
             at += joint.nv
         return np.hstack(columns) if columns else q
 
@@ -214,15 +212,6 @@ class Sampler:
             return (self._payload,)
         force, moment = PAYLOAD_RANGE
         return (Load(self._payload, unit[:, :3] * force, unit[:, 3:] * moment),)
-
-
-def _quaternions(turns: Array) -> Array:
-    """Unit quaternions (x, y, z, w) of rotation vectors, (N, 3) [rad]."""
-    half = np.linalg.norm(turns, axis=1, keepdims=True) / 2
-    vector = turns / 2 * np.sinc(half / np.pi)
-    q = np.hstack([vector, np.cos(half)])
-    unit: Array = q / np.linalg.norm(q, axis=1, keepdims=True)
-    return unit
 
 
 def _range(joint: Joint, unit: str) -> tuple[float, float]:

@@ -109,7 +109,7 @@ def axis_units(model: Model) -> tuple[list[str], list[str]]:
     """Units of the entries of q, and of those of v; accelerations are per second more."""
     places = set(angle_places(model))
     q = ["rad" if k in places else "" for k in range(1, model.nq + 1)]
-    slots = [slot for joint in model.moving for slot in joint.type.q_slots]
+    slots = [own.name for joint in model.moving for own in joint.type.coordinates]
     q = [u or ("1" if slot.startswith("q") else "m") for u, slot in zip(q, slots, strict=True)]
     rotations = [rotation for joint in model.moving for rotation in joint.type.rotations]
     return q, ["rad/s" if rotation else "m/s" for rotation in rotations]

@@ -77,4 +77,4 @@ def _frictional(model: Model) -> bool:
 
 
 def _planar(model: Model) -> bool:
-    return any(len(joint.type.v_slots) > 1 for joint in model.moving)
+    return any(joint.nv > 1 for joint in model.moving)

@@ -1,0 +1,66 @@
+"""The spatial inertia of a body: what there is to say of its mass, over scalars of any kind.
+
+As mass, first moment and tensor about the origin of one frame, inertias of bodies that move as one add up
+(Featherstone, "Rigid Body Dynamics Algorithms", section 2.13). Nothing but `about_com` divides, so masses may have any
+sign.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from rttrr_pin.core.algebra import IDENTITY, Matrix, Scalar, Vector
+
+NOWHERE = Vector(0.0, 0.0, 0.0)
+
+NO_TENSOR = Matrix((NOWHERE, NOWHERE, NOWHERE))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class SpatialInertia:
+    """Mass, first moment and tensor about the origin, in one frame.
+
+    Attributes:
+        m: mass [kg].
+        h: first moment, mass times centre of mass [kg m].
+        J: tensor about the origin [kg m^2].
+    """
+
+    m: Scalar = 0.0
+    h: Vector = NOWHERE
+    J: Matrix = NO_TENSOR
+
+    @classmethod
+    def of(cls, mass: Scalar, com: Vector, tensor: Matrix) -> SpatialInertia:
+        """From the centre of mass [m] and the tensor about it [kg m^2]: J = I + m (c.c 1 - c c^T) (parallel axes)."""
+        return cls(mass, com * mass, tensor + point_tensor(com) * mass)
+
+    def __add__(self, other: SpatialInertia) -> SpatialInertia:
+        return SpatialInertia(self.m + other.m, self.h + other.h, self.J + other.J)
+
+    def __sub__(self, other: SpatialInertia) -> SpatialInertia:
+        return SpatialInertia(self.m - other.m, self.h - other.h, self.J - other.J)
+
+    def moved(self, R: Matrix, p: Vector) -> SpatialInertia:
+        """The same body in a frame in which this one stands at p [m], turned by R."""
+        h, J = R @ self.h, R @ self.J @ R.T
+        shift = IDENTITY * (h.dot(p) * 2) - Matrix.outer(h, p) - Matrix.outer(p, h) + point_tensor(p) * self.m
+        return SpatialInertia(self.m, h + p * self.m, J + shift)
+
+    def about_com(self) -> tuple[Vector, Matrix]:
+        """The centre of mass h / m [m], and the tensor about it [kg m^2]; without mass, the origin and J."""
+        if self.m == 0.0:
+            return NOWHERE, self.J
+        com = Vector(*(x / self.m for x in self.h))
+        return com, self.J - point_tensor(com) * self.m
+
+
+def point_tensor(r: Vector) -> Matrix:
+    """The tensor about the origin of a mass of 1 kg at r [m]: r.r 1 - r r^T."""
+    tensor: Matrix = IDENTITY * r.dot(r) - Matrix.outer(r, r)
+    return tensor
+
+
+def is_zero(x: Scalar) -> bool:
+    """Whether a number of the robot is 0, and not only rounded to it."""
+    return bool(x == 0.0) and not getattr(x, "error", 0.0)
