@@ -24,7 +24,7 @@ import rttrr_pin
 from common import arguments, finish
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.exact.intervals import precision
-from rttrr_pin.exact.straight_line import straight
+from rttrr_pin.exact.straight_line import straight_line
 from rttrr_pin.validation import Sampler
 from saved import result
 
@@ -58,14 +58,14 @@ def block(job: tuple[str, int, int]) -> tuple[str, int, dict[str, tuple[int, np.
     computed = bounded(states.q, states.v, states.a, payload=wrench, threads=1)
     less = alone(states.q, states.v, states.a, payload=wrench, threads=1)
     computed |= {ALONE: less["tau"], f"{ALONE}_bound": less["tau_bound"]}
-    program = straight(robot.model, tuple((load.link, load.in_base) for load in states.loads), "doubles")
+    program = straight_line(robot.model, tuple((load.link, load.in_base) for load in states.loads), "doubles")
     given = np.hstack([states.q, states.v, states.a, *(x for load in states.loads for x in (load.f, load.n))])
     ends = np.cumsum([0, *(computed[quantity][0].size for quantity in COLUMNS)])
     values, bounds = (np.hstack([computed[q + end].reshape(count, -1) for q in COLUMNS]) for end in ("", "_bound"))
-    places = [*program.places, *program.places[: robot.model.nv]]
+    places = [*program.columns, *program.columns[: robot.model.nv]]
     errors, kept = np.empty_like(values), np.empty(values.shape, dtype=bool)
     with precision(BITS):
-        run = program.ready()
+        run = program.prepared()
         for row, state in enumerate(given.tolist()):
             truth = run(state)
             off = [abs(truth[place] - x) for place, x in zip(places, values[row].tolist(), strict=True)]

@@ -25,7 +25,7 @@ from rttrr_pin import Robot
 from rttrr_pin.errors import InputError
 from rttrr_pin.exact import Enclosures, enclose
 from rttrr_pin.exact.adjudication import nearest
-from rttrr_pin.exact.enclosures import STRAIGHT_FROM
+from rttrr_pin.exact.enclosures import STRAIGHT_LINE_FROM
 from rttrr_pin.implementations import Evaluation, make_oracle
 from rttrr_pin.validation import Sampler
 from rttrr_pin.validation.compare import Comparison
@@ -95,7 +95,7 @@ def _figures(eps: Array) -> dict[str, float]:
 def cost(robot: Robot) -> dict[str, float]:
     """Of one state: in a batch, one at a time, and what recording the operations takes once."""
     drawn = Sampler(robot.model).draw(0, TIMED)
-    few = Sampler(robot.model).draw(0, STRAIGHT_FROM - 1)
+    few = Sampler(robot.model).draw(0, STRAIGHT_LINE_FROM - 1)
     start = time.perf_counter()
     batch = _certified(robot, drawn)
     first = time.perf_counter() - start

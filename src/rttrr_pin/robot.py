@@ -24,7 +24,7 @@ from rttrr_pin.errors import InputError, NumberError, UnknownNameError
 if TYPE_CHECKING:
     from rttrr_pin.compile import Kernel
     from rttrr_pin.exact.enclosures import Enclosures
-    from rttrr_pin.exact.parameters import Numbers
+    from rttrr_pin.exact.parameters import Parameters
     from rttrr_pin.inspection import Inspection
 
 KERNEL_FROM = 8192
@@ -129,35 +129,35 @@ class Robot:
         v: Coordinates,
         a: Coordinates,
         payload: Wrench | Sequence[Wrench] | None = None,
-        numbers: Numbers = "doubles",
+        parameters: Parameters = "doubles",
     ) -> Enclosures:
-        """Between which two doubles the true tau, F, N, f, n lie: the recursion on balls, at rising precision.
+        """Enclose the true tau, F, N, f, n between two doubles each, by interval arithmetic at rising precision.
 
-        The coordinates are taken as the exact doubles that they are. Every enclosure is proven, and as narrow as
-        doubles allow: one double or two neighbours, but for what is zero or nearly (see `enclose.umpire.enclose`).
+        The coordinates are exact doubles. Every enclosure is proven, and as narrow as doubles allow: one double or two
+        neighbours, except near zero (see `rttrr_pin.exact.enclose`).
 
         Args:
-            q: joint coordinates, (..., nq) [rad or m], or a dict by joint name. A floating joint's quaternion turns by
-                the matrix that the formula yields, also where its length is 1 only to rounding.
+            q: joint coordinates, (..., nq) [rad or m], or a dict by joint name. A floating joint's quaternion rotates
+                by the matrix that the formula yields, also where its length is 1 only to rounding.
             v: joint rates, (..., nv) [rad/s or m/s].
             a: joint accelerations, (..., nv) [rad/s^2 or m/s^2].
             payload: what the robot exerts on its surroundings; leading axes broadcast with those of q, v, a.
-            numbers: the robot's numbers: `"doubles"`, as the model holds them, rounded rotations and axes included;
-                `"read"`, the doubles that the file's words stand for, and everything computed from them exactly;
-                `"text"`, the same from the file's decimals themselves.
+            parameters: the robot's parameters: `"doubles"`, those of the model, rounded rotations and axes included;
+                `"read"`, the doubles nearest to the file's decimals, and everything computed from them exactly;
+                `"text"`, the same from the decimals themselves.
 
         Returns:
             `.tau` (..., nv) and `.F`, `.N`, `.f`, `.n` (..., links, 3), each with `.lower` and `.upper`, in the frames
             and units of `inverse_dynamics`.
 
         Raises:
-            InputError: there are no such numbers: the robot has no file, or was altered since it was read.
+            InputError: there are no such parameters: the robot has no file, or was altered since it was read.
             ShapeError, NumberError, UnknownNameError, MissingJointError: as in `inverse_dynamics`.
         """
         from rttrr_pin.exact.enclosures import enclose
 
         q, v, a = (coordinates(name, x, self.model.moving) for name, x in (("q", q), ("v", v), ("a", a)))
-        return enclose(self.model, q, v, a, self._loads(payload), numbers)
+        return enclose(self.model, q, v, a, self._loads(payload), parameters)
 
     def compile(self, outputs: str | Sequence[str] = "tau", emitter: str | None = None) -> Kernel:
         """Compile the robot's dynamics for this processor.

@@ -24,7 +24,7 @@ from rttrr_pin.core.scalars import Arithmetic
 from rttrr_pin.core.wrench import LINK_QUANTITIES
 from rttrr_pin.errors import InputError, NumberError, ShapeError
 from rttrr_pin.exact import Enclosures, bounded_dynamics, enclose
-from rttrr_pin.exact.enclosures import PRECISIONS, STRAIGHT_FROM, enclosing_doubles
+from rttrr_pin.exact.enclosures import PRECISIONS, STRAIGHT_LINE_FROM, enclosing_doubles
 from rttrr_pin.exact.intervals import interval, precision
 from rttrr_pin.exact.parameters import exact_parameters
 from rttrr_pin.validation import Sampler
@@ -33,12 +33,12 @@ from support.serial_chains import EXAMPLES, random_chain
 from support.tolerances import SIXTY_DIGITS
 from support.trees import random_tree
 
-ROWS = (4, STRAIGHT_FROM)
+ROWS = (4, STRAIGHT_LINE_FROM)
 """States for which the recursion runs on balls as it stands, and for which its operations are recorded first."""
 
 
-def certified(robot: Robot, states: States, numbers: Any = "doubles") -> Enclosures:
-    return enclose(robot.model, states.q, states.v, states.a, states.loads, numbers)
+def certified(robot: Robot, states: States, parameters: Any = "doubles") -> Enclosures:
+    return enclose(robot.model, states.q, states.v, states.a, states.loads, parameters)
 
 
 def steps(lower: float, upper: float) -> int:
@@ -100,9 +100,9 @@ def test_an_enclosure_is_one_double_or_two_neighbours(name: str) -> None:
 
 
 def test_recorded_or_not_the_enclosures_are_the_same(rttrr: Robot) -> None:
-    states = Sampler(rttrr.model, payload="tool").draw(0, STRAIGHT_FROM)
+    states = Sampler(rttrr.model, payload="tool").draw(0, STRAIGHT_LINE_FROM)
     many = certified(rttrr, states)
-    for k in range(STRAIGHT_FROM):
+    for k in range(STRAIGHT_LINE_FROM):
         one = slice(k, k + 1)
         loads = [load.block(one) for load in states.loads]
         few = enclose(rttrr.model, states.q[one], states.v[one], states.a[one], loads)
@@ -218,9 +218,9 @@ PENDULUM = (
 )
 
 
-@pytest.mark.parametrize("numbers", ["doubles", "read", "text"])
+@pytest.mark.parametrize("parameters", ["doubles", "read", "text"])
 @pytest.mark.parametrize("rows", ROWS)
-def test_a_pendulum_by_hand(numbers: Any, rows: int) -> None:
+def test_a_pendulum_by_hand(parameters: Any, rows: int) -> None:
     """tau = (I + m r^2) a - m r g at q = 0. Both terms are nearly equal: what is left is what decimals were rounded by."""
     robot = rttrr_pin.load(PENDULUM.format(axis="0 1 0"))
     truths = {}
@@ -230,10 +230,10 @@ def test_a_pendulum_by_hand(numbers: Any, rows: int) -> None:
         moment, weight = I + m * r * r, m * r * Fraction(9.81)
         acceleration = acceleration or float(weight / moment)
         truths[kind] = moment * Fraction(acceleration) - weight
-    enclosures = robot.enclose(np.zeros((rows, 1)), np.zeros(1), [acceleration], numbers=numbers)
+    enclosures = robot.enclose(np.zeros((rows, 1)), np.zeros(1), [acceleration], parameters=parameters)
     low, high = enclosures.tau.lower[-1, 0], enclosures.tau.upper[-1, 0]
     inside = {kind: Fraction(low) <= truth <= Fraction(high) for kind, truth in truths.items()}
-    assert inside == {"text": numbers == "text", "doubles": numbers != "text"}
+    assert inside == {"text": parameters == "text", "doubles": parameters != "text"}
     assert steps(low, high) == 1
 
 
@@ -270,16 +270,16 @@ def test_rotations_axes_and_turned_tensors_are_not_rounded(rows: int) -> None:
         N = I * u * mpmath.mpf(0.3)
         F = R.T * mpmath.matrix([0, 0, mpmath.mpf(9.81)]) * mpmath.mpf(0.1)
         found = {
-            numbers: robot.enclose(np.zeros((rows, 1)), [0.0], [0.3], numbers=numbers)
-            for numbers in ("read", "doubles")
+            parameters: robot.enclose(np.zeros((rows, 1)), [0.0], [0.3], parameters=parameters)
+            for parameters in ("read", "doubles")
         }
         inside = {
-            numbers: [
+            parameters: [
                 mpmath.mpf(ends.lower[0, 0, k]) <= truth[k] <= mpmath.mpf(ends.upper[0, 0, k])
                 for truth, ends in ((F, enclosures.F), (N, enclosures.N))
                 for k in range(3)
             ]
-            for numbers, enclosures in found.items()
+            for parameters, enclosures in found.items()
         }
     assert all(inside["read"])
     assert not all(inside["doubles"])
@@ -290,7 +290,7 @@ def test_where_every_number_is_a_double_all_say_the_same(rows: int) -> None:
     text = PENDULUM.format(axis="0 1 0").replace("0.3", "0.25").replace("0.1", "0.125").replace("0.7", "0.75")
     robot = rttrr_pin.load(text)
     states = Sampler(robot.model).draw(0, rows)
-    of_doubles, *others = (certified(robot, states, numbers) for numbers in ("doubles", "read", "text"))
+    of_doubles, *others = (certified(robot, states, parameters) for parameters in ("doubles", "read", "text"))
     for other in others:
         for key, ends in of_doubles.items():
             np.testing.assert_array_equal(ends.lower, getattr(other, key).lower)
@@ -303,10 +303,10 @@ def test_numbers_of_the_file_are_within_rounding_of_the_models(seed: int) -> Non
     robot = rttrr_pin.load(random_tree(seed, 9), base="floating", friction=True)
     states = Sampler(robot.model, "mixed", seed).draw(0, 20)
     values, bounds = bounded_dynamics(robot.model, states.q, states.v, states.a)
-    for numbers in ("read", "doubles"):
-        for key, ends in certified(robot, states, numbers).items():
+    for parameters in ("read", "doubles"):
+        for key, ends in certified(robot, states, parameters).items():
             x, b = getattr(values, key), getattr(bounds, key)
-            assert (ends.lower <= x + b).all() and (x - b <= ends.upper).all(), (numbers, key)
+            assert (ends.lower <= x + b).all() and (x - b <= ends.upper).all(), (parameters, key)
 
 
 def test_a_chain_of_followers_is_multiplied_out_exactly() -> None:
@@ -320,7 +320,7 @@ def test_a_chain_of_followers_is_multiplied_out_exactly() -> None:
     direct = text.replace('joint="joint_2" multiplier="0.1"', 'joint="joint_3" multiplier="0.07" offset="0.03"')
     assert direct != text
     q, v, a = np.full((3, 1), 0.4)
-    one, other = (rttrr_pin.load(x).enclose(q, v, a, numbers="text") for x in (text, direct))
+    one, other = (rttrr_pin.load(x).enclose(q, v, a, parameters="text") for x in (text, direct))
     for key, ends in one.items():
         np.testing.assert_array_equal(ends.lower, getattr(other, key).lower)
 
@@ -328,19 +328,19 @@ def test_a_chain_of_followers_is_multiplied_out_exactly() -> None:
 def test_drives_of_the_file_are_its_decimals_and_others_are_doubles() -> None:
     text = PENDULUM.format(axis="0 1 0").replace("</joint>", '<dynamics damping="0.1" friction="0.3"/></joint>')
     robot = rttrr_pin.load(text, friction=True)
-    loaded, bare = (x.enclose([0.0], [1.0], [0.0], numbers="text") for x in (robot, rttrr_pin.load(text)))
+    loaded, bare = (x.enclose([0.0], [1.0], [0.0], parameters="text") for x in (robot, rttrr_pin.load(text)))
     weight = -Fraction("0.1") * Fraction("0.3") * Fraction(9.81)
     for enclosures, effects in ((loaded, Fraction("0.4")), (bare, 0)):
         assert Fraction(enclosures.tau.lower[0]) <= weight + effects <= Fraction(enclosures.tau.upper[0])
     geared = robot.with_joint_effects({"j": rttrr_pin.JointEffects(armature=0.1, damping=0.2, friction=0.3)})
-    tau = geared.enclose([0.0], [1.0], [0.0], numbers="text").tau
+    tau = geared.enclose([0.0], [1.0], [0.0], parameters="text").tau
     assert Fraction(tau.lower[0]) <= weight + Fraction(0.2) + Fraction("0.3") <= Fraction(tau.upper[0])
 
 
 def test_a_robot_without_a_file_has_no_decimals(rttrr: Robot) -> None:
     bare = Robot(replace(rttrr.model, urdf=""))
-    with pytest.raises(InputError, match="was made from numbers and has no file.*pass numbers='doubles'"):
-        bare.enclose(np.zeros(5), np.zeros(5), np.zeros(5), numbers="text")
+    with pytest.raises(InputError, match="was made from numbers and has no file.*pass parameters='doubles'"):
+        bare.enclose(np.zeros(5), np.zeros(5), np.zeros(5), parameters="text")
 
 
 def altered(model: Model, what: str) -> Model:
@@ -367,7 +367,7 @@ def test_a_model_that_was_altered_is_not_its_file(name: str, what: str) -> None:
     zeros = np.zeros(robot.model.nv)
     kind = "joint" if what in ("axis", "R", "p") else "link"
     with pytest.raises(InputError, match=f"{kind} .* is not what its file says.*altered since"):
-        Robot(altered(robot.model, what)).enclose(zeros, zeros, zeros, numbers="text")
+        Robot(altered(robot.model, what)).enclose(zeros, zeros, zeros, parameters="text")
 
 
 # Inputs and shapes
@@ -406,8 +406,8 @@ def test_numbers_that_are_none_are_refused(rttrr: Robot, bad: float, which: int)
 def test_bad_arguments_are_refused(rttrr: Robot) -> None:
     with pytest.raises(ShapeError, match="expected 5"):
         rttrr.enclose(np.zeros(4), np.zeros(5), np.zeros(5))
-    with pytest.raises(InputError, match="numbers is 'decimals': expected one of 'doubles', 'read', 'text'"):
-        rttrr.enclose(np.zeros(5), np.zeros(5), np.zeros(5), numbers="decimals")  # type: ignore[arg-type]
+    with pytest.raises(InputError, match="parameters is 'decimals': expected one of 'doubles', 'read', 'text'"):
+        rttrr.enclose(np.zeros(5), np.zeros(5), np.zeros(5), parameters="decimals")  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("size", [1e200, -1e300])

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rttrr_pin.core.algebra import Scalar, Vector
 from rttrr_pin.core.arrays import Array
@@ -13,6 +16,8 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import LINK_QUANTITIES, QUANTITIES, LinkWrenches
 from rttrr_pin.errors import NumberError, ShapeError
+
+Number = TypeVar("Number", bound=np.generic)
 
 RESULTS = (*QUANTITIES, "tau_joint")
 """The arrays of `LinkWrenches`."""
@@ -41,6 +46,15 @@ def fill(out: LinkWrenches, part: slice, result: Result) -> None:
         vectors_: list[Vector] = getattr(result, key)
         for i, vector in enumerate(vectors_):
             _fill_columns(getattr(out, key)[part, i], list(vector))
+
+
+def split_columns(
+    model: Model, numbers: NDArray[Number], quantities: Sequence[str] = QUANTITIES
+) -> dict[str, NDArray[Number]]:
+    """Views by quantity, (N, nv) or (N, links, 3), of the columns in the order of `Result.scalars`."""
+    shapes = [(len(model.links), 3) if key in LINK_QUANTITIES else (model.nv,) for key in quantities]
+    parts = np.split(numbers, np.cumsum([math.prod(shape) for shape in shapes])[:-1], axis=1)
+    return {key: part.reshape(len(numbers), *shape) for key, part, shape in zip(quantities, parts, shapes, strict=True)}
 
 
 def _fill_columns(out: Array, scalars: Sequence[Scalar]) -> None:

@@ -20,6 +20,7 @@ from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.newton_euler import Payload, newton_euler
 from rttrr_pin.core.payload import Load, payloads_of
 from rttrr_pin.core.scalars import AXIS_ERROR, ROTATION_ERROR, UNIT_ROUNDOFF, Arithmetic, NumberOf, columns
+from rttrr_pin.core.wrench import QUANTITIES
 
 
 def bodies(model: Model, arithmetic: Arithmetic) -> list[Body]:
@@ -49,6 +50,11 @@ class Result:
     N: list[Vector]
     f: list[Vector]
     n: list[Vector]
+
+    def scalars(self, quantities: Sequence[str] = QUANTITIES) -> list[Scalar]:
+        """The numbers of the quantities in one list: tau by rate; F, N, f, n link by link."""
+        values = (getattr(self, key) for key in quantities)
+        return [x for value in values for item in value for x in (item if isinstance(item, Vector) else (item,))]
 
 
 def evaluate(model: Model, arithmetic: Arithmetic, q: Array, v: Array, a: Array, loads: Sequence[Load] = ()) -> Result:

@@ -1,4 +1,4 @@
-"""The umpire: between which two doubles the true value of each of the five quantities lies, proven by balls."""
+"""Enclosures: two doubles that each true value of the five quantities lies between, by interval arithmetic."""
 
 from __future__ import annotations
 
@@ -12,24 +12,24 @@ from flint import arb
 from numpy.typing import NDArray
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.batch import batch_shape, check_overflow, flat
+from rttrr_pin.core.batch import batch_shape, check_overflow, flat, split_columns
 from rttrr_pin.core.dynamics import bodies
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
-from rttrr_pin.core.wrench import LINK_QUANTITIES, QUANTITIES, LinkWrenches
+from rttrr_pin.core.wrench import QUANTITIES, LinkWrenches
 from rttrr_pin.errors import InputError
 from rttrr_pin.exact.intervals import INTERVAL, interval, precision
-from rttrr_pin.exact.parameters import Numbers, exact_parameters
-from rttrr_pin.exact.recursion import Slots, results_of
+from rttrr_pin.exact.parameters import Parameters, exact_parameters
+from rttrr_pin.exact.recursion import LoadFrames, flat_dynamics
 
 PRECISIONS = (128, 256, 512, 1024, 2048, 4096)
-"""Bits of the balls, one after the other. At 64 bits, which take as long, one state in two is not tight."""
+"""Bits of the intervals, tried in this order. At 64 bits, which take as long, one state in two is not tight."""
 
-STRAIGHT_FROM = 32
-"""States from which recording the operations costs less than it saves."""
+STRAIGHT_LINE_FROM = 32
+"""States from which recording the operations costs less time than it saves."""
 
-OWN, LARGEST = 2.0**-80, 2.0**-200
-"""Widths that do for what is zero or nearly: of the number's own vector, and of the largest of its quantity."""
+RELATIVE_WIDTH, ABSOLUTE_WIDTH = 2.0**-80, 2.0**-200
+"""Widths that suffice near zero, relative to the norm of the vector and to the largest number of the quantity."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -51,13 +51,13 @@ class Enclosure:
         return between
 
     def __getitem__(self, index: int | slice) -> Enclosure:
-        """The same for some states."""
+        """The enclosure of one state or some states."""
         return Enclosure(self.lower[index], self.upper[index])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Enclosures:
-    """What the five quantities truly are, to the last bit of a double; shapes, frames and units as in `LinkWrenches`.
+    """The true values of the five quantities, to the last bit of a double; shapes, frames, units as in `LinkWrenches`.
 
     Attributes:
         tau: driving forces, (..., nv) [N m or N].
@@ -65,7 +65,7 @@ class Enclosures:
         N: net moment about its centre of mass, (..., links, 3) [N m].
         f: force from the parent, (..., links, 3) [N].
         n: moment from the parent about the origin of {i}, (..., links, 3) [N m].
-        bits: precision that it took, (...).
+        bits: precision that was needed, (...).
         tight: whether every enclosure is as narrow as it can be, (...); see `enclose`.
         links: the names along the links axis.
         joints: the names along the last axis of tau.
@@ -86,22 +86,33 @@ class Enclosures:
         return ((key, getattr(self, key)) for key in QUANTITIES)
 
     def __getitem__(self, index: int | slice) -> Enclosures:
-        """The same for one state or some states of a batch."""
+        """The enclosures of one state or some states of a batch."""
         parts = {key: value[index] for key, value in self.items()}
         return Enclosures(**parts, bits=self.bits[index], tight=self.tight[index], links=self.links, joints=self.joints)
 
+    def to_dict(self) -> dict[str, Any]:
+        """The enclosures as lists, for JSON."""
+        return {
+            "schema": 1,
+            "links": list(self.links),
+            "joints": list(self.joints),
+            "bits": self.bits.tolist(),
+            "tight": self.tight.tolist(),
+            **{key: {"lower": x.lower.tolist(), "upper": x.upper.tolist()} for key, x in self.items()},
+        }
+
 
 def enclose(
-    model: Model, q: Array, v: Array, a: Array, loads: Sequence[Load] = (), numbers: Numbers = "doubles"
+    model: Model, q: Array, v: Array, a: Array, loads: Sequence[Load] = (), parameters: Parameters = "doubles"
 ) -> Enclosures:
-    """The specification on balls, to a precision that rises until every enclosure is tight.
+    """Run the reference recursion in interval arithmetic, at a precision that rises until every enclosure is tight.
 
-    Tight is a number whose enclosure is one double, or two neighbours (or, where balls cannot tell the true value from
-    a double, the neighbours of that one). Nor need it be narrower than 2^-80 of the norm of its vector (of itself, for
-    tau), or 2^-200 of the largest number of its quantity or of 1 SI unit: what is truly zero has no last bit.
+    An enclosure is tight if it is one double, or two neighbours (three where the true value cannot be told from the
+    middle one). It need not be narrower than 2^-80 of the norm of its vector (of the number itself, for tau), nor than
+    2^-200 of the largest number of its quantity or of 1 SI unit, because a true zero has no last bit.
 
-    The specification's formulas are taken as they stand: a quaternion whose length is not exactly 1 in doubles turns by
-    the matrix that they yield.
+    The formulas are taken as they stand: a quaternion whose length is not exactly 1 rotates by the matrix that they
+    yield.
 
     Args:
         model: the robot.
@@ -109,35 +120,32 @@ def enclose(
         v: rates, (..., nv).
         a: accelerations, (..., nv).
         loads: payloads; leading axes broadcast with those of q, v, a.
-        numbers: `"doubles"`: those of the model, with rotations and axes as they were rounded; `"read"`: the doubles
-            that the file's words stand for, with rotations, axes and turned tensors computed from them without
-            rounding; `"text"`: the same from the decimals themselves.
+        parameters: `"doubles"`: the model's own, with rounded rotations and axes; `"read"`: the doubles nearest to the
+            file's decimals, with rotations, axes and turned tensors computed from them without rounding; `"text"`: the
+            same from the decimals themselves.
 
     Returns:
         The enclosures, rounded outwards.
 
     Raises:
-        InputError: there are no such numbers: the model has no file, or was altered since it was read.
+        InputError: the model has no such parameters, because it has no file or was altered since it was read.
         NumberError: a result is beyond float64.
         ShapeError: leading axes do not broadcast.
     """
-    if numbers not in get_args(Numbers):
-        raise InputError(f"numbers is {numbers!r}: expected one of {', '.join(map(repr, get_args(Numbers)))}")
+    if parameters not in get_args(Parameters):
+        raise InputError(f"parameters is {parameters!r}: expected one of {', '.join(map(repr, get_args(Parameters)))}")
     batch = batch_shape((q, v, a), loads)
     rows = math.prod(batch)
     q, v, a = (np.broadcast_to(x, (*batch, x.shape[-1])).reshape(rows, x.shape[-1]) for x in (q, v, a))
     loads = [flat(load, batch, rows) for load in loads]
-    sides = [np.broadcast_to(x, (rows, 3)) for load in loads for x in (load.f, load.n)]
-    slots = tuple((load.link, load.in_base) for load in loads)
-    lower, upper, bits, tight = _enclosed(model, np.hstack([q, v, a, *sides]), slots, numbers)
-    for side in (lower, upper):
-        check_overflow(_wrenches(model, side), q, v, a)
-    parts = {
-        key: Enclosure(*(_shaped(model, side)[key].reshape(*batch, *_shape(model, key)) for side in (lower, upper)))
-        for key in QUANTITIES
-    }
+    vectors = [np.broadcast_to(x, (rows, 3)) for load in loads for x in (load.f, load.n)]
+    frames = tuple((load.link, load.in_base) for load in loads)
+    lower, upper, bits, tight = _enclosed(model, np.hstack([q, v, a, *vectors]), frames, parameters)
+    ends = [split_columns(model, end) for end in (lower, upper)]
+    for parts in ends:
+        check_overflow(LinkWrenches.of(parts | {"tau_joint": parts["tau"]}, model.link_names, model.v_names), q, v, a)
     return Enclosures(
-        **parts,
+        **{key: Enclosure(*(x[key].reshape(*batch, *x[key].shape[1:]) for x in ends)) for key in QUANTITIES},
         bits=bits.reshape(batch),
         tight=tight.reshape(batch),
         links=model.link_names,
@@ -146,53 +154,53 @@ def enclose(
 
 
 def _enclosed(
-    model: Model, states: Array, slots: Slots, numbers: Numbers
+    model: Model, states: Array, frames: LoadFrames, parameters: Parameters
 ) -> tuple[Array, Array, NDArray[np.int64], NDArray[np.bool_]]:
-    """Lower and upper ends of all numbers, the bits that they took, and which states are tight."""
+    """Lower and upper ends of all numbers, (N, numbers), the bits that were needed, and which states are tight."""
     rows, size = len(states), model.nv + 12 * len(model.links)
     lower, upper = np.zeros((rows, size)), np.zeros((rows, size))
     bits, tight = np.zeros(rows, dtype=np.int64), np.zeros(rows, dtype=np.bool_)
-    waiting = np.arange(rows)
-    ready, places = _recursion(model, slots, numbers, rows)
-    for some in PRECISIONS:
-        if not len(waiting):
+    pending = np.arange(rows)
+    prepare, columns = _recursion(model, frames, parameters, rows)
+    for bits_now in PRECISIONS:
+        if not len(pending):
             break
-        with precision(some):
-            run = ready()
-            for row in waiting:
-                ends = np.array([enclosing_doubles(x) for x in run(states[row].tolist())], dtype=np.float64).reshape(
-                    -1, 2
-                )
-                lower[row], upper[row] = ends[places, 0], ends[places, 1]
-        bits[waiting] = some
-        tight[waiting] = _tight(model, lower[waiting], upper[waiting])
-        waiting = waiting[~tight[waiting]]
+        with precision(bits_now):
+            run = prepare()
+            for row in pending:
+                pairs = [enclosing_doubles(x) for x in run(states[row].tolist())]
+                lower[row], upper[row] = np.array(pairs, dtype=np.float64).reshape(-1, 2)[columns].T
+        bits[pending] = bits_now
+        tight[pending] = _tight(model, lower[pending], upper[pending])
+        pending = pending[~tight[pending]]
     return lower, upper, bits, tight
 
 
 Run = Callable[[Sequence[float]], list[arb]]
 
 
-def _recursion(model: Model, slots: Slots, numbers: Numbers, rows: int) -> tuple[Callable[[], Run], NDArray[np.intp]]:
-    """What makes, at the precision in force, a function from a state's numbers to balls, and the places of these."""
-    if rows >= STRAIGHT_FROM:
-        from rttrr_pin.exact.straight_line import straight_line  # loads the kernel
+def _recursion(
+    model: Model, frames: LoadFrames, parameters: Parameters, rows: int
+) -> tuple[Callable[[], Run], NDArray[np.intp]]:
+    """A function that prepares, at the precision in force, the evaluation of a state; and the column of each number."""
+    if rows >= STRAIGHT_LINE_FROM:
+        from rttrr_pin.exact.straight_line import straight_line  # loads the compiler
 
-        program = straight_line(model, slots, numbers)
-        return program.ready, program.places
+        program = straight_line(model, frames, parameters)
+        return program.prepared, program.columns
 
-    def ready() -> Run:
+    def prepare() -> Run:
         exact, links = model, bodies(model, INTERVAL)
-        if numbers != "doubles":
-            of_file = exact_parameters(model, numbers)
+        if parameters != "doubles":
+            of_file = exact_parameters(model, parameters)
             exact, links = of_file.model, of_file.bodies(INTERVAL, lambda square: interval(square).rsqrt())
-        return lambda state: [arb(x) for x in results_of(exact, INTERVAL, [arb(x) for x in state], slots, links)]
+        return lambda state: [arb(x) for x in flat_dynamics(exact, INTERVAL, [arb(x) for x in state], frames, links)]
 
-    return ready, np.arange(model.nv + 12 * len(model.links))
+    return prepare, np.arange(model.nv + 12 * len(model.links))
 
 
 def enclosing_doubles(x: arb) -> tuple[float, float]:
-    """The nearest doubles that a ball lies between: one, two neighbours, or as far apart as the ball is wide."""
+    """The nearest doubles that an interval lies between: one, two neighbours, or as far apart as it is wide."""
     middle = float(x)
     if not math.isfinite(middle):
         return middle, middle
@@ -216,31 +224,15 @@ def enclosing_doubles(x: arb) -> tuple[float, float]:
 
 def _tight(model: Model, lower: Array, upper: Array) -> NDArray[np.bool_]:
     """Which states are tight, (N,)."""
-    enough = np.nextafter(np.nextafter(lower, np.inf), np.inf) >= upper
-    if enough.all():
+    narrow = np.nextafter(np.nextafter(lower, np.inf), np.inf) >= upper
+    if narrow.all():
         return np.ones(len(lower), dtype=np.bool_)
     with np.errstate(over="ignore", invalid="ignore"):
-        low, high = _shaped(model, lower), _shaped(model, upper)
-        for key, some in _shaped(model, enough).items():
+        low, high = split_columns(model, lower), split_columns(model, upper)
+        for key, part in split_columns(model, narrow).items():
             size = np.maximum(np.abs(low[key]), np.abs(high[key]))
-            own = size if key == "tau" else np.linalg.norm(size, axis=-1, keepdims=True)
+            norm = size if key == "tau" else np.linalg.norm(size, axis=-1, keepdims=True)
             axes = tuple(range(1, size.ndim))
             largest = np.maximum(size.max(axis=axes, keepdims=True, initial=0.0), 1.0)
-            some |= high[key] - low[key] <= np.maximum(OWN * own, LARGEST * largest)
-    return np.asarray(enough.all(axis=1))
-
-
-def _shape(model: Model, key: str) -> tuple[int, ...]:
-    return (len(model.links), 3) if key in LINK_QUANTITIES else (model.nv,)
-
-
-def _shaped(model: Model, numbers: NDArray[Any]) -> dict[str, NDArray[Any]]:
-    """Views of (N, all numbers) by quantity."""
-    ends = [model.nv + 3 * len(model.links) * k for k in range(4)]
-    parts = np.split(numbers, ends, axis=1)
-    return {key: part.reshape(len(numbers), *_shape(model, key)) for key, part in zip(QUANTITIES, parts, strict=True)}
-
-
-def _wrenches(model: Model, numbers: Array) -> LinkWrenches:
-    parts = _shaped(model, numbers)
-    return LinkWrenches.of(parts | {"tau_joint": parts["tau"]}, model.link_names, model.v_names)
+            part |= high[key] - low[key] <= np.maximum(RELATIVE_WIDTH * norm, ABSOLUTE_WIDTH * largest)
+    return np.asarray(narrow.all(axis=1))

@@ -1,6 +1,6 @@
-"""The ball: a number known to lie between two others, by python-flint's arb; the specification runs on it.
+"""Interval arithmetic by python-flint's `arb`, whose intervals are a midpoint and a radius (a ball).
 
-Every operation encloses the exact result, so what comes out encloses the true value: proof, not evidence.
+Every operation encloses the exact result, so a result of the recursion encloses the true value. That is a proof.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from rttrr_pin.core.scalars import Arithmetic
 
 @contextmanager
 def precision(bits: int) -> Iterator[None]:
-    """Compute balls to so many bits."""
+    """Compute intervals with midpoints of so many bits."""
     before = ctx.prec
     ctx.prec = bits
     try:
@@ -27,7 +27,7 @@ def precision(bits: int) -> Iterator[None]:
 
 
 def interval(value: float | Fraction) -> arb:
-    """The ball of a float or a fraction: exact, or rounded outwards to the precision in force."""
+    """The interval of a float or a fraction: exact, or rounded outwards to the precision in force."""
     if isinstance(value, Fraction):
         return arb(fmpq(value.numerator, value.denominator))
     return arb(float(value))
@@ -45,4 +45,4 @@ def _sign(x: Scalar) -> arb:
 INTERVAL = Arithmetic(
     number=lambda value, error: interval(value), column=lambda x: interval(float(x)), sincos=_sincos, sign=_sign
 )
-"""Balls as a kind of scalar: the model's numbers are the doubles that it holds."""
+"""Intervals as scalars; the model's numbers are the doubles that it holds."""

@@ -27,7 +27,7 @@ from rttrr_pin.urdf.sources import Source
 
 Triple = tuple[Fraction, Fraction, Fraction]
 InverseRoot = Callable[[Fraction], Scalar]
-Numbers = Literal["doubles", "read", "text"]
+Parameters = Literal["doubles", "read", "text"]
 
 ENTRIES = (("ixx", "ixy", "ixz"), ("ixy", "iyy", "iyz"), ("ixz", "iyz", "izz"))
 """The tensor by URDF's words."""
@@ -92,22 +92,22 @@ class ExactParameters:
 
 
 @lru_cache(maxsize=16)
-def exact_parameters(model: Model, numbers: Literal["read", "text"]) -> ExactParameters:
+def exact_parameters(model: Model, parameters: Literal["read", "text"]) -> ExactParameters:
     """The numbers of the file that a model was read from.
 
     Args:
         model: the robot.
-        numbers: `"text"`: each word is the decimal number that it writes; `"read"`: the double nearest to it.
+        parameters: `"text"`: the decimals of the file; `"read"`: the doubles nearest to them.
 
     Raises:
         InputError: the model was made from numbers, or altered since it was read.
     """
     if not model.urdf:
         raise InputError(
-            f"robot {model.name!r} was made from numbers and has no file to take them from: pass numbers='doubles'"
+            f"robot {model.name!r} was made from numbers and has no file to take them from: pass parameters='doubles'"
         )
     root = parse_xml(Source(model.name, model.urdf.encode()))
-    value = _reader(numbers)
+    value = _reader(parameters)
     own = {joint.get("name"): _joint(joint, value) for joint in root.findall("joint")}
     masses = {link.get("name"): _link(link, value) for link in root.findall("link")}
     links = tuple(masses.get(link.name, AIR) for link in model.links)
@@ -115,7 +115,7 @@ def exact_parameters(model: Model, numbers: Literal["read", "text"]) -> ExactPar
     for difference in _differences(model, links, joints):
         raise InputError(
             f"{difference} of robot {model.name!r} is not what its file says: the model was altered since it was "
-            "read; pass numbers='doubles'"
+            "read; pass parameters='doubles'"
         )
     exact = tuple(_exact(joint, as_written, own) for joint, as_written in zip(model.joints, joints, strict=True))
     return ExactParameters(replace(model, joints=exact), links, joints)

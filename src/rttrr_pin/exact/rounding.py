@@ -1,6 +1,6 @@
-"""The (value, error bound) scalar: what rounding can have done to each result, state by state.
+"""The scalar (value, error bound): a bound on the rounding error of each result, state by state.
 
-Run on this scalar, the specification computes the same values by the same operations as on floats, and beside each a
+On this scalar the reference recursion computes the same values by the same operations as on floats, and beside each a
 running error bound (Wilkinson; Higham, "Accuracy and Stability of Numerical Algorithms", section 3.3). With
 |x - x_true| <= b_x, |y - y_true| <= b_y and u the unit roundoff:
 
@@ -20,13 +20,14 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from rttrr_pin.core.algebra import Scalar, Vector
+from rttrr_pin.core.algebra import Scalar
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.batch import RESULTS, split_columns
 from rttrr_pin.core.dynamics import dynamics
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load, payloads_of
 from rttrr_pin.core.scalars import SINE_ULPS, SLACK, UNIT_ROUNDOFF, Arithmetic, columns
-from rttrr_pin.core.wrench import LINK_QUANTITIES, LinkWrenches
+from rttrr_pin.core.wrench import LinkWrenches
 
 Real: TypeAlias = Any  # float | Array: what NumPy's stubs cannot combine without casts
 
@@ -37,8 +38,8 @@ PLAIN = (int, float)
 class Bounded:
     """A computed value and a bound on its distance from the true one.
 
-    The only plain numbers that it meets are small integers (0, 1, -1, 2) and powers of two, which are exact, also among
-    themselves. What else it meets is asked to take the operation over, as dual numbers do.
+    Plain numbers beside it are small integers (0, 1, -1, 2) and powers of two, which are exact, also among themselves.
+    Any other operand takes the operation over, as dual numbers do.
 
     Attributes:
         value: as floating-point arithmetic gives it.
@@ -88,7 +89,7 @@ class Bounded:
 
 
 def _inherited(x: Bounded, y: Bounded) -> Real:
-    """|x| b_y + |y| b_x + b_x b_y; numbers of the model come without error, which saves most of it."""
+    """|x| b_y + |y| b_x + b_x b_y, the error of a product from those of its factors; most factors are exact."""
     if isinstance(y.bound, float) and y.bound == 0.0:
         return x.bound * abs(y.value)
     if isinstance(x.bound, float) and x.bound == 0.0:
@@ -104,7 +105,7 @@ def _number(value: float, error: float) -> Scalar:
 
 
 def _sincos(q: Bounded | int) -> tuple[Bounded, Bounded]:
-    """Sine and cosine have slopes of at most one, so the bound of q carries over; what stands still may be a number."""
+    """Sine and cosine have slopes of at most one, so the bound of q carries over; q of a joint at rest may be plain."""
     if not isinstance(q, Bounded):
         q = Bounded(float(q), 0.0)
     x = float(q.value) if isinstance(q.value, float) else q.value
@@ -114,7 +115,7 @@ def _sincos(q: Bounded | int) -> tuple[Bounded, Bounded]:
 
 
 def _sign(x: Bounded | int) -> Bounded | int:
-    """Of rates, whose sign is that of an exact double; a rate of 0 may be the plain number."""
+    """The sign of a rate, which is an exact double or the plain 0."""
     return Bounded(np.sign(x.value), 0.0) if isinstance(x, Bounded) else x
 
 
@@ -127,10 +128,10 @@ BOUNDED = Arithmetic(
 
 
 def coordinate_scalars(model: Model, q: Array) -> list[Bounded]:
-    """Coordinates as scalars: the doubles are exact, but for quaternions, which no doubles hold at unit length.
+    """Coordinates as scalars: exact doubles, except for quaternions, which doubles do not hold at unit length.
 
-    What is meant by s = (x, y, z, w) is s / |s|, which differs by | |s| - 1 | <= | |s|^2 - 1 | of each component; the
-    square is computed here within 4 u.
+    The quaternion s = (x, y, z, w) stands for s / |s|. Each component differs relatively by at most
+    | |s| - 1 | <= | |s|^2 - 1 |, whose square is computed here within 4 u.
 
     Args:
         model: the robot.
@@ -151,7 +152,7 @@ def bounded_dynamics(
 
     Args:
         model: the robot.
-        q: coordinates, (N, nq) [rad or m]; the doubles are taken as exact, quaternions as what they are of unit length.
+        q: coordinates, (N, nq) [rad or m]; the doubles are exact, quaternions stand for those of unit length.
         v: rates, (N, nv).
         a: accelerations, (N, nv).
         loads: payloads.
@@ -163,19 +164,13 @@ def bounded_dynamics(
     rows = len(q)
     v_, a_ = ([Bounded(column, 0.0) for column in columns(x)] for x in (v, a))
     result = dynamics(model, BOUNDED, coordinate_scalars(model, q), v_, a_, payloads_of(loads, BOUNDED))
-    values, bounds = {}, {}
-    for key in ("tau", "tau_joint"):
-        values[key], bounds[key] = values_and_bounds(getattr(result, key), rows)
-    for key in LINK_QUANTITIES:
-        vectors: list[Vector] = getattr(result, key)
-        value, bound = values_and_bounds([scalar for vector in vectors for scalar in vector], rows)
-        values[key], bounds[key] = value.reshape(rows, -1, 3), bound.reshape(rows, -1, 3)
-    links, joints = model.link_names, model.v_names
-    return LinkWrenches.of(values, links, joints), LinkWrenches.of(bounds, links, joints)
+    parts = (split_columns(model, x, RESULTS) for x in values_and_bounds(result.scalars(RESULTS), rows))
+    values, bounds = (LinkWrenches.of(x, model.link_names, model.v_names) for x in parts)
+    return values, bounds
 
 
 def values_and_bounds(scalars: Sequence[Scalar], rows: int) -> tuple[Array, Array]:
-    """Values and bounds of scalars, side by side."""
+    """Values and bounds of scalars, (N, scalars) each."""
     values, bounds = np.empty((rows, len(scalars))), np.zeros((rows, len(scalars)))
     for column, scalar in enumerate(scalars):
         if isinstance(scalar, Bounded):

@@ -15,7 +15,7 @@ from rttrr_pin.core.wrench import LINK_QUANTITIES, LinkWrenches
 from rttrr_pin.errors import InputError
 from rttrr_pin.exact.adjudication import Adjudication, Assessment, Deviation, in_order, nearest
 from rttrr_pin.exact.enclosures import Enclosures, enclose
-from rttrr_pin.exact.parameters import Numbers, exact_parameters
+from rttrr_pin.exact.parameters import Parameters, exact_parameters
 from rttrr_pin.implementations import Evaluation
 from rttrr_pin.validation.compare import Comparison, Gap, ratio
 from rttrr_pin.validation.states import States
@@ -80,7 +80,7 @@ def _share(gap: Gap, of_ours: bool) -> float:
     return float(ratio(gap.difference, gap.own if of_ours else gap.allowance)[0])
 
 
-def true_numbers(model: Model) -> Numbers:
+def true_numbers(model: Model) -> Parameters:
     """Whose numbers decide who is right: the file's, as any program reads them; without a file, the model's own."""
     try:
         exact_parameters(model, "read")
