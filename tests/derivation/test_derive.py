@@ -394,7 +394,7 @@ def test_friction_of_a_joint_that_follows_another(form: str) -> None:
     """Its sign is that of the other's rate, turned where the multiplier is negative."""
     model = branched()
     effects = [JointEffects(0.0 if joint.mimic else 0.1, 0.2, 0.3) for joint in model.joints]
-    joints = tuple(replace(joint, drive=drive) for joint, drive in zip(model.joints, effects, strict=True))
+    joints = tuple(replace(joint, effects=drive) for joint, drive in zip(model.joints, effects, strict=True))
     rubbing = Robot(replace(model, joints=joints))
     module: dict[str, Any] = {}
     exec(WRITERS["python"](symbolic.derive(rubbing, ["tau", "M"], form)), module)
