@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 import rttrr_pin
-from rttrr_pin import Robot
+from rttrr_pin import Robot, implementations
 from rttrr_pin.compile import cache
+from support.fakes import Liar
 from support.serial_chains import EXAMPLES
 
 
 @pytest.fixture(scope="session", autouse=True)
 def compiled_programs(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
-    """Where compiled programs lie while tests run: not where the user keeps them."""
+    """Where compiled programs lie while tests run: one folder for all workers, and not where the user keeps them."""
     with pytest.MonkeyPatch.context() as patch:
-        folder = tmp_path_factory.mktemp("compiled")
+        own = tmp_path_factory.getbasetemp()
+        folder = (own.parent if "PYTEST_XDIST_WORKER" in os.environ else own) / "compiled"
         patch.setenv(cache.VARIABLE, str(folder))
         yield folder
 
@@ -36,3 +39,10 @@ def rttrr() -> Robot:
 def robot(request: pytest.FixtureRequest) -> Robot:
     """The bundled arm and chains made to be awkward."""
     return rttrr_pin.load(EXAMPLES.get(request.param, request.param))
+
+
+@pytest.fixture
+def liar(monkeypatch: pytest.MonkeyPatch) -> type[Liar]:
+    """An implementation called "liar", whose `spoil` the test sets."""
+    monkeypatch.setitem(implementations.ORACLES, "liar", "support.fakes:Liar")
+    return Liar

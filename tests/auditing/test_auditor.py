@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-import audit_misprints
+from fuzz import misprint_campaign
 from rttrr_pin.auditing import Kind, Verdict, audit, read_publication
 from rttrr_pin.auditing.edits import LIMIT, WEIGHT, between_factors, between_numbers
 from rttrr_pin.auditing.form import folded, in_printed_form
@@ -119,16 +119,16 @@ def test_the_audit_is_the_same_every_time(of_the_paper) -> None:
 
 
 def test_planted_misprints_are_found_and_named() -> None:
-    """As benchmarks/audit_misprints.py, which has 1,000 of them."""
-    cases = [audit_misprints.case(seed) for seed in range(100)]
+    """As `python -m tests.fuzz.misprint_campaign`, which has 1,000 of them."""
+    cases = [misprint_campaign.case(seed) for seed in range(100)]
     assert all(found for _, found, _ in cases)
     slips = [right for named, _, _ in cases for _, right in named]
-    assert sum(slips) >= audit_misprints.WANTED * len(slips)
+    assert sum(slips) >= misprint_campaign.WANTED * len(slips)
     assert {kind for named, _, _ in cases for kind, _ in named} == {str(kind) for kind in Kind}
 
 
 def test_a_clean_copy_is_not_reported() -> None:
-    assert audit_misprints.clean(0) == []
+    assert misprint_campaign.clean(0) == []
 
 
 # Slips and pairing

@@ -12,7 +12,6 @@ import numpy as np
 import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
-from tests.exact.test_rounding import exact_dynamics
 
 import rttrr_pin
 from rttrr_pin import Robot
@@ -28,6 +27,7 @@ from rttrr_pin.core.dynamics import bodies
 from rttrr_pin.core.scalars import UNIT_ROUNDOFF
 from rttrr_pin.exact import bounded_dynamics, enclose
 from rttrr_pin.validation import Sampler
+from support.high_precision import exact_dynamics
 from support.serial_chains import random_chain
 from support.tolerances import ROUNDING
 from support.trees import random_tree

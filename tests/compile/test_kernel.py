@@ -15,13 +15,13 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.project.test_robot import BAD, JOINTS, PAYLOADS, ZERO, some
 
 import rttrr_pin
 from rttrr_pin import JointEffects, Robot, RttrrError, Wrench
 from rttrr_pin.compile import QUANTITIES, Kernel
 from rttrr_pin.errors import InputError, NumberError, ShapeError, UnknownNameError
 from rttrr_pin.validation import Sampler
+from support.inputs import BAD, JOINTS, PAYLOADS, ZERO, some
 from support.serial_chains import EXAMPLES
 from support.tolerances import ROUNDING, norm_error
 from support.trees import random_tree

@@ -12,10 +12,11 @@ import rttrr_pin
 from rttrr_pin import LinkWrenches, Robot, Wrench
 from rttrr_pin.core.dynamics import evaluate
 from rttrr_pin.core.payload import Load
-from rttrr_pin.core.scalars import FLOAT, Arithmetic
+from rttrr_pin.core.scalars import FLOAT
 from rttrr_pin.implementations import make_oracle
 from rttrr_pin.validation import EPS as PACKAGE_EPS
 from rttrr_pin.validation import SAMPLINGS, Sampler, validate
+from support.high_precision import mp_arithmetic
 from support.serial_chains import RANDOM_TYPES, random_chain
 from support.tolerances import EPS, MODEL, ROUNDING, norm_error
 
@@ -99,11 +100,6 @@ def test_armless_robot_has_reactions_only(robot: Robot) -> None:
     result = robot.inverse_dynamics(np.full(nv, 0.3), np.zeros(nv), np.zeros(nv))
     weight = sum(link.mass for link in robot.model.links) * 9.81
     assert abs(np.linalg.norm(result.f[0]) - weight) <= ROUNDING * weight
-
-
-def mp_arithmetic() -> Arithmetic:
-    number = lambda value, error: mpmath.mpf(value)
-    return Arithmetic(number, mpmath.mpf, sincos=lambda q: (mpmath.sin(q), mpmath.cos(q)), sign=mpmath.sign)
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.validation.test_validate import Liar, liar
 
 import rttrr_pin
 from rttrr_pin import LinkWrenches, Robot
@@ -26,10 +25,9 @@ from rttrr_pin.validation import ours as ours_module
 from rttrr_pin.validation.adjudicate import adjudicate, true_numbers
 from rttrr_pin.validation.compare import ADJUDICATED, Ranking
 from rttrr_pin.validation.report_data import state_data, validation_data
+from support.fakes import Liar
 from support.serial_chains import EXAMPLES
 from support.trees import random_tree
-
-__all__ = ["liar"]
 
 PLACES = [("F", 3), ("N", 4), ("F", 5), ("f", 2), ("n", 4), ("tau", 1), ("tau", 5)]
 

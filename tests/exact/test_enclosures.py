@@ -13,7 +13,6 @@ import pytest
 from flint import arb
 from hypothesis import given
 from hypothesis import strategies as st
-from tests.exact.test_rounding import exact_dynamics, mp_rotation
 
 import rttrr_pin
 from rttrr_pin import Robot, Wrench
@@ -29,6 +28,7 @@ from rttrr_pin.exact.intervals import interval, precision
 from rttrr_pin.exact.parameters import exact_parameters
 from rttrr_pin.validation import Sampler
 from rttrr_pin.validation.states import States
+from support.high_precision import exact_dynamics, mp_rotation
 from support.serial_chains import EXAMPLES, random_chain
 from support.tolerances import SIXTY_DIGITS
 from support.trees import random_tree

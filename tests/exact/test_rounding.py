@@ -8,30 +8,17 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
-from tests.core.test_newton_euler import mp_arithmetic
 
 import rttrr_pin
 from rttrr_pin import Robot
-from rttrr_pin.core.dynamics import bodies, dynamics, evaluate
-from rttrr_pin.core.model import Model
-from rttrr_pin.core.payload import Load
+from rttrr_pin.core.dynamics import bodies, dynamics
 from rttrr_pin.core.scalars import UNIT_ROUNDOFF
 from rttrr_pin.exact import BOUNDED, Bounded, bounded_dynamics
 from rttrr_pin.validation import SAMPLINGS, Sampler
+from support.high_precision import exact_dynamics, mp_arithmetic, mp_rotation
 from support.serial_chains import random_chain
 from support.tolerances import ROUNDING
 from support.trees import random_tree
-
-
-def exact_dynamics(
-    model: Model, q: np.ndarray, v: np.ndarray, a: np.ndarray, loads: list[Load]
-) -> dict[str, np.ndarray]:
-    """The five quantities of one state in 60 digits."""
-    result = evaluate(model, mp_arithmetic(), q, v, a, loads)
-    out = {
-        key: np.array([list(vector) for vector in getattr(result, key)], dtype=object) for key in ("F", "N", "f", "n")
-    }
-    return out | {"tau": np.array(result.tau, dtype=object)}
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -79,15 +66,6 @@ def test_bounds_are_of_the_size_of_rounding(rttrr: Robot) -> None:
         x_, b = x.reshape(500, -1), getattr(bounds, key).reshape(500, -1)
         assert (np.linalg.norm(b, axis=1) <= ROUNDING * np.linalg.norm(x_, axis=1)).all(), key
         assert b.max() > 0.0
-
-
-def mp_rotation(rpy: list[str]) -> Any:
-    """R = Rz(yaw) Ry(pitch) Rx(roll) of decimal angles, in the working precision of mpmath."""
-    (r, p, y) = (mpmath.mpf(float(word)) for word in rpy)
-    x = mpmath.matrix([[1, 0, 0], [0, mpmath.cos(r), -mpmath.sin(r)], [0, mpmath.sin(r), mpmath.cos(r)]])
-    yy = mpmath.matrix([[mpmath.cos(p), 0, mpmath.sin(p)], [0, 1, 0], [-mpmath.sin(p), 0, mpmath.cos(p)]])
-    z = mpmath.matrix([[mpmath.cos(y), -mpmath.sin(y), 0], [mpmath.sin(y), mpmath.cos(y), 0], [0, 0, 1]])
-    return z * yy * x
 
 
 RPY = [

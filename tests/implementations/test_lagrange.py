@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.laws.test_laws import BASES, BUNDLED, driven, put_in
 
 import rttrr_pin
 from rttrr_pin import Robot
@@ -21,6 +20,8 @@ from rttrr_pin.exact.intervals import INTERVAL, interval, precision
 from rttrr_pin.implementations import make_oracle
 from rttrr_pin.implementations.lagrange import lagrange
 from rttrr_pin.validation import Sampler, compare_state, validate
+from support.mutants import put_in
+from support.robots import BASES, BUNDLED, driven
 from support.tolerances import ROUNDING, norm_error
 from support.trees import random_tree
 

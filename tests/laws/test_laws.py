@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -14,10 +13,8 @@ import pytest
 import rttrr_pin
 from rttrr_pin import Robot, Wrench
 from rttrr_pin.cli import main
-from rttrr_pin.core import dynamics as arithmetic
 from rttrr_pin.core import newton_euler
 from rttrr_pin.core.algebra import ZERO, Vector
-from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.core.joints import JOINT_TYPES, revolute
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.newton_euler import Payload
@@ -28,19 +25,12 @@ from rttrr_pin.laws import balance as law_balance
 from rttrr_pin.laws.case import Case
 from rttrr_pin.laws.table import LAWS
 from rttrr_pin.validation import SAMPLINGS, Sampler
+from support.mutants import put_in
+from support.robots import BASES, BUNDLED, driven
 from support.serial_chains import random_chain
 from support.trees import random_tree
 
-BUNDLED = ("rttrr", "trr", "trtr", "trtrr", "trttr")
-BASES = ("fixed", "floating")
-
 IDS = [law.id for law in LAWS]
-
-
-def driven(robot: Robot) -> Robot:
-    """Armature, damping and friction in every joint that moves, followers too."""
-    moving = [joint.name for joint in robot.model.joints if joint.nv]
-    return robot.with_joint_effects({name: JointEffects(0.25 + i, 0.5, 0.75) for i, name in enumerate(moving)})
 
 
 def broken(report: LawReport) -> list[str]:
@@ -119,19 +109,6 @@ SLIPS: dict[str, tuple[ModuleType, str, str]] = {
     "S702": (newton_euler, "w.cross(w.cross(r_C))", "w.cross(r_C)"),
 }
 """For each law a slip in the specification that breaks it."""
-
-
-def put_in(monkeypatch: pytest.MonkeyPatch, module: ModuleType, old: str, new: str) -> None:
-    """Run the specification from here on with a slip in its source."""
-    source = inspect.getsource(module)
-    assert source.count(old) == 1, f"{old!r} must stand once in {module.__name__}"
-    assert old in source
-    mutant = ModuleType(module.__name__)
-    exec(compile(source.replace(old, new), module.__name__, "exec"), mutant.__dict__)
-    if module is newton_euler:
-        monkeypatch.setattr(arithmetic, "newton_euler", mutant.newton_euler)
-    else:
-        monkeypatch.setattr(revolute.Revolute, "motion", mutant.Revolute.motion)
 
 
 def test_every_law_has_a_slip() -> None:

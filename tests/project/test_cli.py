@@ -17,6 +17,7 @@ import rttrr_pin
 from rttrr_pin import implementations as oracles
 from rttrr_pin.cli import main
 from rttrr_pin.core.wrench import QUANTITIES
+from support.fakes import Liar
 from support.serial_chains import EXAMPLES
 from support.tolerances import ROUNDING, norm_error
 
@@ -158,13 +159,11 @@ def test_a_damaged_file_exits_2_with_its_line(tmp_path: Path, capsys: pytest.Cap
 
 
 def test_disagreement_exits_1(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
-    from tests.validation.test_validate import Liar
-
     def spoil(result: rttrr_pin.LinkWrenches, q: object) -> None:
         result.n[:, 2] += 1.0
 
     monkeypatch.setattr(Liar, "spoil", staticmethod(spoil))
-    monkeypatch.setitem(oracles.ORACLES, "liar", "test_validate:Liar")
+    monkeypatch.setitem(oracles.ORACLES, "liar", "support.fakes:Liar")
     assert main(["validate", "--states", "20", "--oracle", "liar"]) == 1
     out = capsys.readouterr().out
     assert "FAIL 1 of 29 rows beyond rounding, first n at link_3" in out

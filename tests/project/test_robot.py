@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from decimal import Decimal
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -15,15 +13,8 @@ from rttrr_pin import Robot, RttrrError, Wrench
 from rttrr_pin.core.batch import BLOCK
 from rttrr_pin.errors import InputError, MissingJointError, NumberError, ShapeError, UnknownNameError
 from rttrr_pin.robot import KERNEL_FROM
+from support.inputs import BAD, JOINTS, PAYLOADS, ZERO, some
 from support.tolerances import ROUNDING, norm_error
-
-ZERO = np.zeros(5)
-JOINTS = tuple(f"joint_{i}" for i in range(1, 6))
-
-
-def some(shape: tuple[int, ...], seed: int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    q, v, a = np.random.default_rng(seed).uniform(-1, 1, (3, *shape, 5))
-    return q, v, a
 
 
 @pytest.mark.parametrize("batch", [(), (1,), (3,), (2, 3), (0,), (2, 0), (1, 1, 1)], ids=str)
@@ -138,38 +129,6 @@ def test_repr_names_the_joints(rttrr: Robot) -> None:
     assert "joint_3 (prismatic)" in repr(rttrr)
 
 
-BAD: dict[str, tuple[Any, type[RttrrError], str]] = {
-    "four-values": (np.zeros(4), ShapeError, r"q has 4 values on its last axis, expected 5 \(joint_1, joint_2"),
-    "scalar": (1.0, ShapeError, "q has no axis, expected 5"),
-    "transposed": (np.zeros((5, 9)), ShapeError, "q has 9 values on its last axis"),
-    "empty": (np.zeros((3, 0)), ShapeError, "q has 0 values"),
-    "ragged": ([[0] * 5, [0] * 4], ShapeError, "no rectangular array"),
-    "nan": ([0, 0, np.nan, 0, 0], NumberError, r"q\[2\], joint 'joint_3', is nan, expected a finite number"),
-    "inf-in-batch": (
-        np.where(np.arange(15).reshape(3, 5) == 13, -np.inf, 0.0),
-        NumberError,
-        r"q\[2, 3\], joint 'joint_4', is -inf",
-    ),
-    "two-nans": ([np.nan] * 2 + [0] * 3, NumberError, "2 such values in all"),
-    "complex": (np.zeros(5, dtype=complex), NumberError, "array of complex.*take .real"),
-    "bool": (np.zeros(5, dtype=bool), NumberError, "array of bool"),
-    "text": (["0"] * 5, NumberError, "array of text"),
-    "none": ([None] * 5, NumberError, r"q\[0\] is None \(NoneType\)"),
-    "decimal": ([Decimal(1)] * 5, NumberError, r"Decimal.*float\(\)"),
-    "fraction": ([Fraction(1, 3)] * 5, NumberError, "Fraction"),
-    "longdouble": (np.zeros(5, dtype=np.longdouble), NumberError, "array of float128|array of longdouble"),
-    "big-int64": (np.array([0, 0, 0, 0, 2**53 + 1]), NumberError, r"q\[4\] is 9007199254740993, which float64 cannot"),
-    "big-python-int": ([0, 10**400, 0, 0, 0], NumberError, r"q\[1\] is an integer of 401 digits"),
-    "uint64": (np.full(5, 2**64 - 1, dtype=np.uint64), NumberError, "cannot hold exactly"),
-    "masked": (np.ma.masked_greater(np.arange(5.0), 3), NumberError, "masked entries"),
-    "dates": (np.zeros(5, dtype="M8[s]"), NumberError, "array of date"),
-    "unknown-joint": (dict.fromkeys((*JOINTS[:4], "joint5"), 0.0), UnknownNameError, "'joint5': did you mean joint_5"),
-    "missing-joint": (dict.fromkeys(JOINTS[1:], 0.0), MissingJointError, "q lacks joint_1.*'joint_1': 0.0"),
-    "dict-shapes": (dict.fromkeys(JOINTS, np.zeros(2)) | {"joint_2": np.zeros(3)}, ShapeError, r"joint_2: \(3,\)"),
-    "dict-nan": (dict.fromkeys(JOINTS, 0.0) | {"joint_2": np.nan}, NumberError, "joint_2.* is nan"),
-}
-
-
 @pytest.mark.parametrize("name", ["q", "v", "a"])
 @pytest.mark.parametrize("case", BAD)
 def test_bad_coordinates_are_named_with_joint_and_index(rttrr: Robot, case: str, name: str) -> None:
@@ -198,17 +157,6 @@ def test_batches_that_do_not_broadcast_are_an_error(rttrr: Robot) -> None:
         rttrr.inverse_dynamics(np.zeros((2, 5)), np.zeros((3, 5)), ZERO)
     with pytest.raises(ShapeError, match="payload force"):
         rttrr.inverse_dynamics(np.zeros((2, 5)), ZERO, ZERO, Wrench(np.zeros((3, 3))))
-
-
-PAYLOADS: dict[str, tuple[Any, type[RttrrError], str]] = {
-    "unknown-link": (Wrench((0, 0, 0), link="link_7"), UnknownNameError, "no link is called 'link_7'"),
-    "root": (Wrench((0, 0, 0), link="base"), UnknownNameError, "'base' is the root"),
-    "two-numbers": (Wrench((0, 0)), ShapeError, "payload force has 2 values"),
-    "number": (Wrench(3.0), ShapeError, "payload force is a single number"),
-    "nan": (Wrench((0, 0, 0), (0, np.nan, 0)), NumberError, r"payload moment\[1\] is nan"),
-    "tuple": ((1, 2, 3), InputError, "payload is a int, expected a Wrench"),
-    "integer": (3, InputError, "payload is a int, expected a Wrench"),
-}
 
 
 @pytest.mark.parametrize("case", PAYLOADS)

@@ -193,7 +193,7 @@ def test_links_come_in_chain_order_whatever_the_order_in_the_file() -> None:
 
 
 MISSED: dict[str, tuple[str, str, str, int]] = {
-    # What parsers skip or misread without a sound: most were found by benchmarks/fuzz_urdf.py.
+    # What parsers skip or misread without a sound: most were found by tests/fuzz.
     "arabic-digits": ('value="1.5"', 'value="\u0661\u0665"', "'\u0661\u0665' is not a decimal number", 6),
     "no-break-space": ("0.1 0.2 0.3", "0.1\u00a00.2 0.3", "has 2 values, expected 3", 5),
     "blank-value": ('value="1.5"', 'value="\u2003"', "has 0 values, expected 1", 6),

@@ -8,8 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from tests.validation.test_validate import Liar
-from tests.validation.test_validate import liar as nameless_liar
 
 import rttrr_pin
 from rttrr_pin import LinkWrenches, Robot
@@ -21,18 +19,17 @@ from rttrr_pin.validation.compare import ADJUDICATED
 from rttrr_pin.validation.ours import Ours
 from rttrr_pin.validation.report_data import validation_data
 from rttrr_pin.validation.search import search
+from support.fakes import Liar
 from support.trees import random_tree
-
-__all__ = ["nameless_liar"]
 
 ALL = ("pinocchio", "mujoco", "lagrange")
 
 
 @pytest.fixture
-def liar(nameless_liar: type[Liar], monkeypatch: pytest.MonkeyPatch) -> type[Liar]:
+def liar(liar: type[Liar], monkeypatch: pytest.MonkeyPatch) -> type[Liar]:
     """Pinocchio with one number changed, under a name of its own."""
-    monkeypatch.setattr(nameless_liar, "name", "liar")
-    return nameless_liar
+    monkeypatch.setattr(liar, "name", "liar")
+    return liar
 
 
 def wrong_in_one(wrenches: LinkWrenches, q: np.ndarray) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -11,34 +10,12 @@ import pytest
 
 import rttrr_pin
 from rttrr_pin import LinkWrenches, Robot, Wrench
-from rttrr_pin import implementations as oracles
-from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.errors import InputError
-from rttrr_pin.implementations import Evaluation
 from rttrr_pin.implementations.pinocchio import PinocchioOracle
 from rttrr_pin.validation import Sampler, Validation, compare_state, validate
+from support.fakes import Liar
 from support.tolerances import EPS, ROUNDING
-
-Spoil = Any
-
-
-class Liar(PinocchioOracle):
-    """An oracle with one number changed; what is changed is set by the test."""
-
-    spoil: Spoil = None
-
-    def evaluate(self, q: np.ndarray, v: np.ndarray, a: np.ndarray, loads: Sequence[Load] = ()) -> Evaluation:
-        result = super().evaluate(q, v, a, loads)
-        type(self).spoil(result.wrenches, q)
-        return result
-
-
-@pytest.fixture
-def liar(monkeypatch: pytest.MonkeyPatch) -> type[Liar]:
-    monkeypatch.setitem(oracles.ORACLES, "liar", f"{__name__}:Liar")
-    monkeypatch.setattr(oracles, "import_module", lambda name: __import__("sys").modules[name])
-    return Liar
 
 
 def outcome(result: Validation) -> dict[tuple[str, str], tuple[int, int]]:

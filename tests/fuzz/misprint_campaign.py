@@ -3,7 +3,7 @@
 From the derived equations of the paper's 60 components: 1,000 copies of a component with one to three slips each, and
 200 clean copies of all 60, each set in type at random: order, spelling, spaces, brackets, line breaks, c^2 or s^2.
 
-Run: python benchmarks/audit_misprints.py [--cases N] [--clean N] [--seed S] [--save]. Exit 1 if a slip is not found, if
+Run: python -m tests.fuzz.misprint_campaign [--cases N] [--clean N] [--seed S] [--save]. Exit 1 if a slip is not found, if
 less than 98 percent are named, or if a clean copy is reported.
 """
 
@@ -19,12 +19,12 @@ from multiprocessing import get_context
 
 import numpy as np
 
-from common import arguments, finish
-from misprints import Misprint, Numeral, Printer, Typesetter
 from rttrr_pin.auditing import Kind, read_publication
 from rttrr_pin.auditing.audit import Auditor, Paired
 from rttrr_pin.auditing.publication import DEFINITION, Equation
 from rttrr_pin.derivation.symbols import Terms
+
+from .misprints import Misprint, Numeral, Printer, Typesetter
 
 WANTED = 0.98
 
@@ -119,6 +119,8 @@ def clean(seed: int) -> list[str]:
 
 
 def main() -> int:
+    from benchmarks.common import arguments, finish
+
     parser = arguments(__doc__ or "")
     parser.add_argument("--cases", type=int, default=1000)
     parser.add_argument("--clean", type=int, default=200)

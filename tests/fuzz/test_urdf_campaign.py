@@ -1,4 +1,4 @@
-"""A sample of the fuzzing campaign (benchmarks/fuzz_urdf.py), and that its second reader would notice."""
+"""A sample of the fuzzing campaign, and that its second reader would notice."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import rttrr_pin
-from fuzz_mutations import mutate
-from fuzz_reading import UnreadableError, differences, exact
-from fuzz_seeds import SMALL
-from fuzz_urdf import case, check
+from fuzz.mutations import mutate
+from fuzz.second_reader import UnreadableError, differences, exact
+from fuzz.seeds import SMALL
+from fuzz.urdf_campaign import case, check
 from rttrr_pin.urdf.sources import bundled
 
 TEXTS = SMALL | {name: path.read_text(encoding="utf-8") for name, path in bundled().items()}
@@ -89,7 +89,7 @@ def test_crashes_and_slow_cases_are_failures(tmp_path: Path, monkeypatch: pytest
     with monkeypatch.context() as patched:
         patched.setattr(rttrr_pin, "load", broken)
         assert "KeyError" in check(SMALL["one"], tmp_path, nobody)["failure"]
-    monkeypatch.setattr("fuzz_urdf.SLOW", 0.0)
+    monkeypatch.setattr("fuzz.urdf_campaign.SLOW", 0.0)
     assert "took" in check(SMALL["one"], tmp_path, nobody)["failure"]
 
 

@@ -2,9 +2,11 @@
 
 Each case is made from the campaign's seed and its own number, so that `--first N --count 1` repeats one. A case passes
 if `rttrr_pin.load` raises an error of the package, or returns a model that says, number by number, what a second reader
-finds in the text (fuzz_reading.py), within a second. Of the accepted ones a share is also held against the model that
+finds in the text (second_reader.py), within a second. Of the accepted ones a share is also held against the model that
 Pinocchio builds; where Pinocchio reads another number than the text has, our check must say so. Workers are processes:
 one that dies or hangs is noticed, and what it was at is written down.
+
+Run: python -m tests.fuzz.urdf_campaign [--seed S] [--first N] [--count N] [--workers N] [--save]. Exit 1 if a case fails.
 """
 
 from __future__ import annotations
@@ -22,10 +24,9 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any
 
-import fuzz_reading
-from common import RESULTS, arguments, finish
-from fuzz_mutations import mutate
-from fuzz_seeds import SMALL, seeds
+from .mutations import mutate
+from .second_reader import differences
+from .seeds import SMALL, seeds
 
 SLOW = 1.0
 """Seconds of processor time that reading one file may take."""
@@ -41,6 +42,9 @@ ENOUGH = 200
 
 CHUNK = 250
 """Cases given to a worker at a time."""
+
+FAILURES = Path(__file__).parents[2] / "benchmarks/results/fuzz_urdf_failures"
+"""Where the texts of failures are kept."""
 
 LOADING, PINOCCHIO = 0, 1
 
@@ -82,7 +86,7 @@ def check(text: str, folder: Path, ask_pinocchio: Any) -> dict[str, Any]:
         failure = f"{type(error).__name__}: {error}"
     seconds = time.process_time() - started
     if model is not None:
-        failure = "; ".join(fuzz_reading.differences(text.encode(errors="surrogateescape"), model))
+        failure = "; ".join(differences(text.encode(errors="surrogateescape"), model))
         if not failure:
             answer, failure = ask_pinocchio(model)
             kind += answer
@@ -250,12 +254,13 @@ def summary(seed: int, numbers: range, outcomes: Iterable[tuple[int, dict[str, A
 
 
 def keep(seed: int, index: int, texts: dict[str, str]) -> None:
-    folder = RESULTS / "fuzz_urdf_failures"
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / f"{seed}_{index}.urdf").write_bytes(case(seed, index, texts).encode(errors="surrogateescape"))
+    FAILURES.mkdir(parents=True, exist_ok=True)
+    (FAILURES / f"{seed}_{index}.urdf").write_bytes(case(seed, index, texts).encode(errors="surrogateescape"))
 
 
 def main() -> int:
+    from benchmarks.common import arguments, finish
+
     parser = arguments(__doc__.splitlines()[0] if __doc__ else "")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--first", type=int, default=0, help="number of the first case")
