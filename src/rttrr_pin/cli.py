@@ -7,15 +7,15 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib import import_module
 from typing import Annotated, Any
 
 import typer
-from rich.console import Console
 from typer.core import TyperGroup
 
 from rttrr_pin.errors import ModelMismatchError, RttrrError
-from rttrr_pin.reporting.output import AGREE, DISAGREE, INTERRUPTED, UNUSABLE, discard_stdout
+from rttrr_pin.reporting.output import AGREE, DISAGREE, INTERRUPTED, UNUSABLE, discard_stdout, open_streams
 
 UsageError: Any = typer.BadParameter.__base__
 """Typer brings its own copy of click and does not export this class."""
@@ -79,27 +79,42 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns:
         The exit code.
     """
-    errors = Console(stderr=True, markup=False, highlight=False, soft_wrap=True)
+    open_streams()
+    words = sys.argv[1:] if arguments is None else list(arguments)
     try:
-        code = app(args=None if arguments is None else list(arguments), standalone_mode=False, prog_name="rttrr-pin")
+        code = app(args=words, standalone_mode=False, prog_name="rttrr-pin")
         sys.stdout.flush()
     except UsageError as error:
         message = error.format_message()
-        errors.print(
-            message if message.startswith("Usage") else f"error: {message}\nsee: {error.ctx.command_path} --help"
-        )
+        _say(message if message.startswith("Usage") else f"error: {message}\nsee: {_command_of(words)} --help")
         code = UNUSABLE
     except ModelMismatchError as error:
-        errors.print(f"DISAGREE: {error}")
+        _say(f"DISAGREE: {error}")
         code = DISAGREE
     except RttrrError as error:
-        errors.print(f"error: {error}")
+        _say(f"error: {error}")
         code = UNUSABLE
     except (typer.Abort, KeyboardInterrupt):  # by its version, Typer raises or returns the code
         code = INTERRUPTED
     except BrokenPipeError:  # before a verdict, as in --help
         discard_stdout()
         code = AGREE
+    except OSError as error:  # a folder that may not be read; without a name, a full disk behind stdout
+        if error.filename is None:
+            discard_stdout()
+        _say(f"error: {error.filename or 'standard output'}: {error.strerror}")
+        code = UNUSABLE
     if code == INTERRUPTED:
-        errors.print("interrupted: nothing was written")
+        _say("interrupted: nothing was written")
     return code if isinstance(code, int) else AGREE
+
+
+def _command_of(words: Sequence[str]) -> str:
+    """The command that was called, as far as it exists."""
+    return f"rttrr-pin {words[0]}" if words and words[0] in COMMANDS else "rttrr-pin"
+
+
+def _say(message: str) -> None:
+    """A message on stderr, where that takes one."""
+    with suppress(OSError):
+        print(message, file=sys.stderr, flush=True)

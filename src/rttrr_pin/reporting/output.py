@@ -29,6 +29,13 @@ class Output(Console):
         discard_stdout()
 
 
+def open_streams() -> None:
+    """Give a process that was started with stdout or stderr closed ones that go nowhere."""
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w", encoding="utf-8"))
+
+
 def discard_stdout() -> None:
     """What is still to be written goes nowhere."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
