@@ -6,7 +6,7 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import fields, replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -249,7 +249,7 @@ class Robot:
         """The parameters that `regressor` multiplies, (10 links,), ten for each link."""
         from rttrr_pin.core.inertia import SpatialInertia
 
-        found: list[float] = []
+        found: list[Any] = []
         for body in bodies(self.model, FLOAT):
             link = SpatialInertia.of(body.M, body.r_C, body.I)
             x, y, z = link.J.rows

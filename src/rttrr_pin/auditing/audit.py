@@ -128,8 +128,7 @@ class Auditor:
         if equation.quantity == "tau":
             return forms.tau[equation.place]
         vectors = {"vC": forms.v_dot_C, "F": forms.F, "N": forms.N, "f": forms.f, "n": forms.n}
-        polynomial: Polynomial = list(vectors[equation.quantity][equation.place])[_axis(equation, k)]
-        return polynomial
+        return self.robot.ring.lift(list(vectors[equation.quantity][equation.place])[_axis(equation, k)])
 
     def _best(self, equation: Equation, turned: Mapping[str, Polynomial] | None = None) -> tuple[str, list[Paired]]:
         """The way to divide the display that leaves the least to explain."""

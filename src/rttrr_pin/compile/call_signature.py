@@ -47,7 +47,7 @@ def arguments(x: Any, graph: Graph) -> tuple[Hashable, list[Leaf]]:
     """
     leaves: list[Leaf] = []
 
-    def number(x: Leaf) -> Leaf:
+    def number(x: Any) -> Leaf:
         return graph.value.get(x.number, x) if isinstance(x, Node) else x
 
     def scalar(x: Leaf) -> Hashable:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 from rttrr_pin.core.inertia import SpatialInertia
 from rttrr_pin.core.joints.base import Body
@@ -36,12 +37,12 @@ def regroup(model: Model, links: Sequence[Body]) -> tuple[Model, list[Body]]:
     """
     model, bodies = _carried_by_moving_links(model, list(links))
     moved_mass = [0.0] * len(bodies)  # sum of |M| of the links whose mass or first moment a link has taken
-    own_mass = [abs(float(body.M)) for body in bodies]
+    own_mass = [_size(body.M) for body in bodies]
     for moves in (False, True):  # fixed links first: they are one body with their carrier
         for i in reversed(range(len(bodies))):
             if (model.joints[i].nv > 0) is not moves:
                 continue
-            parent, mass = model.joints[i].parent, abs(float(bodies[i].M))
+            parent, mass = model.joints[i].parent, _size(bodies[i].M)
             for first_moment in (True, False):
                 parts = bodies[i].type.regrouped(bodies[i], first_moment)
                 if parts is None or _is_nothing(parts[1]):
@@ -51,7 +52,7 @@ def regroup(model: Model, links: Sequence[Body]) -> tuple[Model, list[Body]]:
                     bodies[i] = rest
                     break
                 heavy = moved.m != 0.0 or any(moved.h)
-                total = abs(float(bodies[parent].M + moved.m))
+                total = _size(bodies[parent].M + moved.m)
                 taken = moved_mass[parent] + mass if heavy else 0.0
                 if heavy and not total >= LEAST_MASS * max(own_mass[parent], taken):
                     continue
@@ -79,6 +80,10 @@ def _with(body: Body, more: SpatialInertia) -> Body:
     total = SpatialInertia.of(body.M, body.r_C, body.I) + more
     com, tensor = total.about_com()
     return replace(body, M=total.m, r_C=com, I=(tensor + tensor.T) * 0.5)
+
+
+def _size(mass: Any) -> float:
+    return abs(float(mass))
 
 
 def _is_nothing(inertia: SpatialInertia) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 from rttrr_pin.compile.constants import ConstantWithError
 from rttrr_pin.compile.expression import Graph, Node, Op
@@ -117,7 +118,7 @@ def fields(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot]
     return (*(Field(name, (sizes[name],)) for name in needed), *slots)
 
 
-def _number(graph: Graph, scalar: Scalar) -> int:
+def _number(graph: Graph, scalar: Any) -> int:
     """The node of a scalar that may have stayed a plain number."""
     return scalar.number if isinstance(scalar, Node) else graph.constant(scalar)
 
@@ -133,14 +134,14 @@ def _value(value: float, error: float) -> float:
     return value
 
 
-def _sincos(q: Scalar) -> tuple[Scalar, Scalar]:
+def _sincos(q: Any) -> tuple[Scalar, Scalar]:
     """Also of a plain number: what follows another joint with multiplier 0 stands still."""
     if isinstance(q, Node):
         return q.function(Op.SIN), q.function(Op.COS)
     return math.sin(q), math.cos(q)
 
 
-def _sign(x: Scalar) -> Scalar:
+def _sign(x: Any) -> Scalar:
     return x.function(Op.SIGN) if isinstance(x, Node) else float((x > 0) - (x < 0))
 
 

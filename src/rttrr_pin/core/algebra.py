@@ -10,13 +10,27 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, TypeAlias, overload
+from typing import Any, Protocol, TypeAlias, overload
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-Scalar: TypeAlias = Any
-"""Anything with +, - and *; the algebra never asks what it is."""
+
+class Scalar(Protocol):
+    """Anything with +, - and *; the algebra never asks what it is.
+
+    With what it can be added and multiplied is each kind's own affair, and so is what else it can do: code that makes
+    scalars of one kind, or takes them apart, knows it and says `Any`.
+    """
+
+    def __add__(self, other: Any, /) -> Scalar: ...
+    def __radd__(self, other: Any, /) -> Scalar: ...
+    def __sub__(self, other: Any, /) -> Scalar: ...
+    def __rsub__(self, other: Any, /) -> Scalar: ...
+    def __mul__(self, other: Any, /) -> Scalar: ...
+    def __rmul__(self, other: Any, /) -> Scalar: ...
+    def __neg__(self) -> Scalar: ...
+
 
 Lift: TypeAlias = Callable[[float], Scalar]
 """Turns a float of the model into a scalar."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TypeVar
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.core.algebra import Scalar, Vector
+from rttrr_pin.core.algebra import Vector
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dynamics import Result
 from rttrr_pin.core.model import Model
@@ -57,7 +57,7 @@ def split_columns(
     return {key: part.reshape(len(numbers), *shape) for key, part, shape in zip(quantities, parts, shapes, strict=True)}
 
 
-def _fill_columns(out: Array, scalars: Sequence[Scalar]) -> None:
+def _fill_columns(out: Array, scalars: Sequence[Any]) -> None:
     for column, scalar in enumerate(scalars):
         out[:, column] = scalar
 

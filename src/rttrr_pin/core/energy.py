@@ -111,8 +111,7 @@ def potential_energy(links: Sequence[Body], moving: Sequence[LinkState], gravity
 
 def linear_momentum(body: Body, link: LinkState) -> Vector:
     """M v_C of one link, in base axes [kg m/s]."""
-    P: Vector = link.R @ (link.velocity_of(body.r_C) * body.M)
-    return P
+    return link.R @ (link.velocity_of(body.r_C) * body.M)
 
 
 def spin(body: Body, link: LinkState) -> Vector:

@@ -8,6 +8,7 @@ sign.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from rttrr_pin.core.algebra import IDENTITY, Matrix, Scalar, Vector
 
@@ -49,16 +50,16 @@ class SpatialInertia:
 
     def about_com(self) -> tuple[Vector, Matrix]:
         """The centre of mass h / m [m], and the tensor about it [kg m^2]; without mass, the origin and J."""
-        if self.m == 0.0:
+        m: Any = self.m  # of a kind that can be divided, as scalars need not be
+        if m == 0.0:
             return NOWHERE, self.J
-        com = Vector(*(x / self.m for x in self.h))
-        return com, self.J - point_tensor(com) * self.m
+        com = Vector(*(x / m for x in self.h))
+        return com, self.J - point_tensor(com) * m
 
 
 def point_tensor(r: Vector) -> Matrix:
     """The tensor about the origin of a mass of 1 kg at r [m]: r.r 1 - r r^T."""
-    tensor: Matrix = IDENTITY * r.dot(r) - Matrix.outer(r, r)
-    return tensor
+    return IDENTITY * r.dot(r) - Matrix.outer(r, r)
 
 
 def is_zero(x: Scalar) -> bool:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 from rttrr_pin.core.algebra import IDENTITY, Matrix, Scalar, Vector
 
-SinCos: TypeAlias = Callable[[Scalar], tuple[Scalar, Scalar]]
+SinCos: TypeAlias = Callable[[Any], tuple[Scalar, Scalar]]
 """Sine and cosine of one kind of scalar."""
 
 
@@ -16,8 +16,7 @@ def rotation(axis: Vector, q: Scalar, sincos: SinCos) -> Matrix:
     s, c = sincos(q)
     along = Matrix.outer(axis, axis)
     across = IDENTITY - along
-    turned: Matrix = along + across * c + Matrix.skew(axis) * s
-    return turned
+    return along + across * c + Matrix.skew(axis) * s
 
 
 def quaternion_rotation(x: Scalar, y: Scalar, z: Scalar, w: Scalar) -> Matrix:

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -55,7 +56,7 @@ class Arithmetic:
     number: NumberOf
     column: Callable[[float | Array], Scalar]
     sincos: SinCos
-    sign: Callable[[Scalar], Scalar]
+    sign: Callable[[Any], Scalar]
     keep: Keep = lambda x: x
     call: Call = lambda step, *arguments: step(*arguments)
 

@@ -55,7 +55,7 @@ def closed_forms(robot: SymbolicRobot, most_terms: int | None = None) -> ClosedF
 
     def keep(x: Vector) -> Vector:
         reduced = ring.reduced_vector(x)
-        if most_terms is not None and max(map(len, reduced)) > most_terms:
+        if most_terms is not None and max(len(ring.lift(component)) for component in reduced) > most_terms:
             raise TooLongError
         return reduced
 

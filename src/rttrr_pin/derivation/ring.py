@@ -50,7 +50,7 @@ class Ring:
             return None
         return "c" + name.removeprefix("s")
 
-    def lift(self, x: Scalar) -> Polynomial:
+    def lift(self, x: Any) -> Polynomial:
         """Any scalar (an integer, a fraction, a polynomial) as a polynomial."""
         if isinstance(x, fmpq_mpoly):
             if x.context() is not self._context:
@@ -75,7 +75,7 @@ class Ring:
         """The same for each component."""
         return Vector(*(self.reduced(component) for component in x))
 
-    def terms(self, x: Scalar) -> Terms:
+    def terms(self, x: Any) -> Terms:
         """A polynomial as coefficients by product."""
         names = self._names
         return {
@@ -101,7 +101,7 @@ class Ring:
         """The partial derivative by a symbol; a sine or cosine counts as a symbol of its own."""
         return self.lift(x).derivative(name)
 
-    def substituted(self, x: Scalar, values: Mapping[str, Scalar]) -> Polynomial:
+    def substituted(self, x: Any, values: Mapping[str, Any]) -> Polynomial:
         """The polynomial with others in place of some symbols."""
         images = [self.lift(values[name]) if name in values else self[name] for name in self._names]
         return self.reduced(self.lift(x).compose(*images, ctx=self._context))

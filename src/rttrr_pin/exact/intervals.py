@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from fractions import Fraction
+from typing import Any
 
 from flint import arb, ctx, fmpq
 
-from rttrr_pin.core.algebra import Scalar
 from rttrr_pin.core.scalars import Arithmetic
 
 
@@ -33,12 +33,12 @@ def interval(value: float | Fraction) -> arb:
     return arb(float(value))
 
 
-def _sincos(x: Scalar) -> tuple[arb, arb]:
+def _sincos(x: Any) -> tuple[arb, arb]:
     sine, cosine = arb(x).sin_cos()
     return sine, cosine
 
 
-def _sign(x: Scalar) -> arb:
+def _sign(x: Any) -> arb:
     return arb(x).sgn()
 
 

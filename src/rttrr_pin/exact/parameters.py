@@ -19,7 +19,7 @@ from rttrr_pin.core.algebra import Matrix, Scalar, Vector
 from rttrr_pin.core.joint import Joint, JointEffects, Mimic
 from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
-from rttrr_pin.core.rotations import rotation
+from rttrr_pin.core.rotations import SinCos, rotation
 from rttrr_pin.core.scalars import Arithmetic
 from rttrr_pin.errors import InputError
 from rttrr_pin.urdf.document import parse_xml
@@ -209,13 +209,12 @@ def _float_sincos(x: float) -> tuple[float, float]:
     return float(np.sin(x)), float(np.cos(x))
 
 
-def _turn(rpy: Triple, number: Callable[[Any], Scalar], sincos: Callable[[Scalar], Any]) -> Matrix:
+def _turn(rpy: Triple, number: Callable[[Any], Scalar], sincos: SinCos) -> Matrix:
     """URDF's R = R_z(yaw) R_y(pitch) R_x(roll)."""
     roll, pitch, yaw = (number(angle) for angle in rpy)
     x, y, z = Vector(1, 0, 0), Vector(0, 1, 0), Vector(0, 0, 1)
     about_y_x = rotation(y, pitch, sincos) @ rotation(x, roll, sincos)
-    turned: Matrix = rotation(z, yaw, sincos) @ about_y_x
-    return turned
+    return rotation(z, yaw, sincos) @ about_y_x
 
 
 def _body(
@@ -252,5 +251,4 @@ def _axis(joint: Joint, own: WrittenJoint, number: Callable[[Fraction], Scalar],
     if length * length == square:
         return Vector(*(number(x / length) for x in own.axis))
     x, y, z = map(number, own.axis)
-    unit: Vector = Vector(x, y, z) * inverse_root(square)
-    return unit
+    return Vector(x, y, z) * inverse_root(square)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import islice
+from typing import Any
 
 from rttrr_pin.core.algebra import Scalar, Vector
 from rttrr_pin.core.dynamics import dynamics
@@ -18,7 +19,7 @@ LoadFrames = tuple[tuple[int, bool], ...]
 
 def flat_dynamics(
     model: Model, arithmetic: Arithmetic, inputs: Sequence[Scalar], frames: LoadFrames, links: Sequence[Body]
-) -> list[Scalar]:
+) -> list[Any]:
     """From q, v, a, then f and n of each payload, to tau, then F, N, f, n link by link, of one state."""
     values = iter(inputs)
     q, v, a = (list(islice(values, size)) for size in (model.nq, model.nv, model.nv))

@@ -169,7 +169,7 @@ def bounded_dynamics(
     return values, bounds
 
 
-def values_and_bounds(scalars: Sequence[Scalar], rows: int) -> tuple[Array, Array]:
+def values_and_bounds(scalars: Sequence[Any], rows: int) -> tuple[Array, Array]:
     """Values and bounds of scalars, (N, scalars) each."""
     values, bounds = np.empty((rows, len(scalars))), np.zeros((rows, len(scalars)))
     for column, scalar in enumerate(scalars):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -104,6 +105,7 @@ def _with_armature(case: Case) -> Rows:
     for joint, state in zip(case.model.joints, states, strict=True):
         if joint.effects.armature:
             armature = case.arithmetic.number(joint.effects.armature, 0.0)
+            rate: Any  # a dual
             for rate in state.v:
                 for i in rate.parts:
                     for j in rate.parts:
@@ -113,7 +115,8 @@ def _with_armature(case: Case) -> Rows:
 
 def _rows(case: Case) -> Array:
     """The batch, of which all scalars are."""
-    return np.atleast_1d(case.v[0].value)
+    rate: Any = case.v[0]
+    return np.atleast_1d(rate.value)
 
 
 def _matrix(rows: Rows, count: int) -> tuple[Array, Array]:

@@ -30,8 +30,7 @@ class Revolute(JointType):
 
     def origin_shift(self, axis: Vector, offset: Vector) -> Vector:
         """Along the axis."""
-        along: Vector = axis * offset.x
-        return along
+        return axis * offset.x
 
     def regrouped(self, body: Body, first_moment: bool) -> tuple[Body, SpatialInertia] | None:
         """The first moment along u and a tensor d (1 - u u^T) may move: what they describe lies on the axis.
