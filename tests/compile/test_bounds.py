@@ -29,6 +29,7 @@ from rttrr_pin.exact import bounded_dynamics, enclose
 from rttrr_pin.validation import Sampler
 from support.high_precision import exact_dynamics
 from support.serial_chains import random_chain
+from support.slow import slow_after
 from support.tolerances import ROUNDING
 from support.trees import random_tree
 
@@ -150,7 +151,7 @@ def check(
                 assert (error <= result[key + "_bound"][k]).all(), (key, k)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", slow_after(2, range(6)))
 @pytest.mark.parametrize("base", ["fixed", "floating"])
 def test_no_true_error_exceeds_its_bound_in_trees(seed: int, base: Any) -> None:
     check(rttrr_pin.load(random_tree(seed, 7), base=base, friction=True), "mixed", seed)
@@ -161,7 +162,7 @@ def test_no_true_error_exceeds_its_bound(robot: Robot, sampling: str) -> None:
     check(robot, sampling, 3)
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", slow_after(2, range(12)))
 @pytest.mark.parametrize("base", ["fixed", "floating"])
 def test_no_true_error_exceeds_its_bound_where_inertia_was_moved(seed: int, base: Any) -> None:
     """Asked for tau alone, the kernel computes with other inertias than the file's."""
@@ -185,7 +186,7 @@ def check_file(urdf: str, quantities: tuple[str, ...] = FIVE, count: int = 40) -
 
 
 @pytest.mark.parametrize("quantities", [FIVE, ("tau",)], ids="-".join)
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", slow_after(2, range(12)))
 def test_bounds_cover_what_reading_the_file_rounds(seed: int, quantities: tuple[str, ...]) -> None:
     check_file(random_tree(seed, 6), quantities)
 

@@ -26,6 +26,7 @@ from rttrr_pin.errors import InputError, NumberError
 from rttrr_pin.validation import Sampler
 from rttrr_pin.validation.states import States
 from support.serial_chains import random_chain
+from support.slow import slow_after
 from support.tolerances import ROUNDING, norm_error
 from support.trees import random_tree
 
@@ -72,7 +73,7 @@ def assert_equal(ours: dict[str, np.ndarray], theirs: LinkWrenches) -> None:
 
 @pytest.mark.parametrize("by", BY_CALLS)
 @pytest.mark.parametrize("base", ["fixed", "floating"])
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", slow_after(1, range(4)))
 def test_trees_of_all_joints_followers_drives_and_payloads(seed: int, base: str, by: str) -> None:
     robot = rttrr_pin.load(random_tree(seed, 12), base=base, friction=True)  # type: ignore[arg-type]
     names = [joint.name for joint in robot.model.joints if joint.nv]
@@ -83,7 +84,7 @@ def test_trees_of_all_joints_followers_drives_and_payloads(seed: int, base: str,
         assert_equal(ours, robot.inverse_dynamics(s.q, s.v, s.a, wrenches))
 
 
-@pytest.mark.parametrize("seed", range(2))
+@pytest.mark.parametrize("seed", slow_after(1, range(2)))
 @pytest.mark.parametrize("name", OF_STEPS)
 def test_each_output_alone_is_that_of_straight_lines(name: str, seed: int) -> None:
     robot = rttrr_pin.load(random_tree(seed, 7), friction=True)

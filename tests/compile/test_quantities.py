@@ -16,6 +16,7 @@ from rttrr_pin.core.joints import CONTINUOUS, FLOATING, PLANAR
 from rttrr_pin.errors import InputError
 from rttrr_pin.validation import Sampler
 from support.serial_chains import inertial, joint, random_chain
+from support.slow import slow_but
 from support.tolerances import DIFFERENCES, EPS, ROUNDING, norm_error
 from support.trees import random_tree
 
@@ -68,7 +69,7 @@ def pin_coordinates(robot: Robot, q: np.ndarray) -> np.ndarray:
     return np.stack(columns, axis=1)
 
 
-@pytest.mark.parametrize("case", ROBOTS)
+@pytest.mark.parametrize("case", slow_but(("rttrr", "trr", "floating-tree", "planar-joints"), ROBOTS))
 def test_mass_matrix_is_pinocchios(case: str) -> None:
     _, _, ours = made(case)
     model, q = theirs(case)

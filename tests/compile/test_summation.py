@@ -24,6 +24,7 @@ from rttrr_pin.exact import enclose
 from rttrr_pin.exact.enclosures import Enclosure
 from rttrr_pin.validation import Sampler
 from support.serial_chains import EXAMPLES
+from support.slow import slow_but
 from support.trees import random_tree
 
 FIVE = ("tau", "F", "N", "f", "n")
@@ -179,7 +180,7 @@ def test_fused_operations_round_once(name: str, op: Op, expected: float) -> None
     assert (out == expected).all()
 
 
-@pytest.mark.parametrize("name", list(ROBOTS))
+@pytest.mark.parametrize("name", slow_but(("rttrr", "fixed-first", "tree-1"), ROBOTS))
 def test_compilers_have_no_choice(name: str) -> None:
     """What is fused is written down, so both compilers of fused operations give the same bits."""
     robot = rttrr_pin.load(ROBOTS[name])

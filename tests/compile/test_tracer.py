@@ -26,6 +26,7 @@ from rttrr_pin.core.scalars import FLOAT
 from rttrr_pin.validation import Sampler
 from rttrr_pin.validation.states import States
 from support.serial_chains import inertial, joint, random_chain
+from support.slow import slow_after
 from support.tolerances import ROUNDING, norm_error
 from support.trees import random_tree
 
@@ -219,7 +220,7 @@ def test_lumping_leaves_the_driving_forces(seed: int, base: Any) -> None:
     assert norm_error(lumped_forces(robot.model, drawn), theirs) <= ROUNDING
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", slow_after(10, range(30)))
 def test_lumping_adds_no_operation(seed: int) -> None:
     model = rttrr_pin.load(random_tree(seed, 1 + seed % 12), friction=True).model
     for outputs in (["tau"], ["mass_matrix"], ["tau", "gravity_torque"]):

@@ -42,6 +42,7 @@ from rttrr_pin.validation import Sampler
 from support import closed_latex
 from support.pdflatex import compiled
 from support.serial_chains import EXAMPLES, random_chain
+from support.slow import slow_but
 from support.tolerances import ROUNDING, norm_error
 from support.trees import random_tree
 
@@ -80,6 +81,9 @@ CASES = [
 """Robot, form, and whether its numbers have letters."""
 
 IDS = ["-".join(case) for case in CASES]
+
+FAST = [CASES[k] for k in (1, 2, 5, 7, 11)]
+"""Those that the README's test line runs: each form, letters and numbers, an arm, a chain, a floating base."""
 
 
 @cache
@@ -170,14 +174,14 @@ def inputs(name: str, quantity: str) -> list[np.ndarray]:
     return [getattr(at, x) for x in subject.inputs] + ([payload] if subject.payload else [])
 
 
-@pytest.mark.parametrize("case", CASES, ids=IDS)
+@pytest.mark.parametrize("case", slow_but(FAST, CASES), ids=IDS)
 def test_python_gives_what_pinocchio_gives(case: tuple[str, str, str]) -> None:
     module: dict[str, Any] = {}
     exec(compile(written(case, "python"), "closed.py", "exec"), module)
     assert_pinocchios(case[0], {key: module[key](*inputs(case[0], key)) for key in ALL})
 
 
-@pytest.mark.parametrize("case", CASES, ids=IDS)
+@pytest.mark.parametrize("case", slow_but(FAST, CASES), ids=IDS)
 def test_c_compiles_without_a_warning_and_gives_what_pinocchio_gives(
     case: tuple[str, str, str], tmp_path: Path
 ) -> None:
@@ -218,8 +222,13 @@ def values(name: str, derivation: symbolic.Derivation) -> dict[str, np.ndarray |
 READ = [(case, "latex") for case in CASES] + [(case, "markdown") for case in CASES[:4]]
 
 
-@pytest.mark.parametrize(("case", "language"), READ, ids=[f"{'-'.join(case)}-{language}" for case, language in READ])
-def test_formulas_read_again_give_what_pinocchio_gives(case: tuple[str, str, str], language: str) -> None:
+@pytest.mark.parametrize(
+    "read",
+    slow_but([(case, language) for case in FAST for language in ("latex", "markdown")], READ),
+    ids=[f"{'-'.join(case)}-{language}" for case, language in READ],
+)
+def test_formulas_read_again_give_what_pinocchio_gives(read: tuple[tuple[str, str, str], str]) -> None:
+    case, language = read
     name, derivation = case[0], derived(*case)
     spelled = {key: symbol.latex for key, symbol in derivation.symbols.items()}
     given = values(name, derivation)

@@ -27,6 +27,7 @@ from rttrr_pin.validation.compare import ADJUDICATED, Ranking
 from rttrr_pin.validation.report_data import state_data, validation_data
 from support.fakes import Liar
 from support.serial_chains import EXAMPLES
+from support.slow import slow_after
 from support.trees import random_tree
 
 PLACES = [("F", 3), ("N", 4), ("F", 5), ("f", 2), ("n", 4), ("tau", 1), ("tau", 5)]
@@ -58,7 +59,7 @@ def altered(model: Model, link: int, key: str, factor: float = 1 + 1e-9) -> Mode
     return replace(model, links=tuple(links), joints=tuple(joints))
 
 
-@pytest.mark.parametrize("sampling", ["uniform", "corners", "large-velocities"])
+@pytest.mark.parametrize("sampling", slow_after(1, ["large-velocities", "uniform", "corners"]))
 def test_both_are_right_at_random_states(robot: Robot, sampling: str) -> None:
     for state in range(8):
         adjudication = compare_state(robot, state, 3, sampling, "random").adjudicated

@@ -22,6 +22,7 @@ from rttrr_pin.implementations.lagrange import lagrange
 from rttrr_pin.validation import Sampler, compare_state, validate
 from support.mutants import put_in
 from support.robots import BASES, BUNDLED, driven
+from support.slow import slow_after
 from support.tolerances import ROUNDING, norm_error
 from support.trees import random_tree
 
@@ -37,7 +38,7 @@ def test_bundled_arms_agree(name: str, base: Any) -> None:
 
 
 @pytest.mark.parametrize("base", BASES)
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", slow_after(4, range(8)))
 def test_random_trees_agree_with_the_recursion_and_with_pinocchio(seed: int, base: Any) -> None:
     """Every joint type, followers, drives."""
     robot = driven(rttrr_pin.load(random_tree(seed, 3 + seed), base=base))

@@ -23,6 +23,7 @@ from rttrr_pin.implementations.mujoco_model import PREFIX
 from rttrr_pin.validation import Sampler, validate
 from rttrr_pin.validation.comparison_run import ComparisonRun
 from support.serial_chains import random_chain
+from support.slow import slow_after
 from support.tampered import TAMPERED, with_joint, with_link
 from support.tolerances import ROUNDING, WELL_BELOW, norm_error
 from support.trees import random_tree
@@ -45,7 +46,7 @@ def test_awkward_chains_agree(robot: Robot) -> None:
     assert worst_share(robot, sampling="mixed") <= WELL_BELOW
 
 
-@pytest.mark.parametrize("seed", range(12))
+@pytest.mark.parametrize("seed", slow_after(6, range(12)))
 @pytest.mark.parametrize("base", ["fixed", "floating"])
 def test_trees_of_all_joint_types_agree(seed: int, base: Any) -> None:
     """With fixed and massless links, followers before and behind those they follow, damping and friction."""
