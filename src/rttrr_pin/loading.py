@@ -11,6 +11,7 @@ from rttrr_pin.core.inputs import vectors
 from rttrr_pin.core.model import STANDARD_GRAVITY
 from rttrr_pin.errors import InputError, ShapeError
 from rttrr_pin.robot import Robot
+from rttrr_pin.urdf.reader import read_urdf
 from rttrr_pin.urdf.sources import AnySource, robots_in
 
 
@@ -40,8 +41,6 @@ def load(
         ShapeError, NumberError: gravity is no vector of three finite numbers.
         InputError: the source is of another type, an extra is missing, or base is neither "fixed" nor "floating".
     """
-    from rttrr_pin.urdf.reader import read_urdf  # loads yourdfpy, which takes long
-
     field = vectors("gravity", gravity)
     if field.ndim != 1:
         raise ShapeError(

@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -25,7 +23,6 @@ if TYPE_CHECKING:
     from rttrr_pin.compile import Kernel
     from rttrr_pin.exact.enclosures import Enclosures
     from rttrr_pin.exact.parameters import Parameters
-    from rttrr_pin.inspection import Inspection
 
 KERNEL_FROM = 8192
 """States in a batch from which compiling, or reading what was compiled before, costs less than it saves."""
@@ -336,27 +333,6 @@ class Robot:
                     )
         joints = tuple(replace(joint, effects=effects.get(joint.name, joint.effects)) for joint in self.model.joints)
         return Robot(replace(self.model, joints=joints))
-
-    def inspect(
-        self, folder: str | os.PathLike[str] | None = None, select: Iterable[str] = (), ignore: Iterable[str] = ()
-    ) -> Inspection:
-        """Look at the file behind the robot: tree, bodies, findings, and what other programs do with it.
-
-        Args:
-            folder: where the file lies, to find its meshes from; None leaves meshes unread.
-            select: prefixes of the ids of the checks to run (see docs/inspect.md); none means all.
-            ignore: prefixes of ids to leave out.
-
-        Returns:
-            The inspection; masses in kg, lengths in m, inertias in kg m^2.
-
-        Raises:
-            InputError: the robot was made from numbers and has no file.
-            UnknownNameError: a prefix fits no check.
-        """
-        from rttrr_pin.inspection import inspect
-
-        return inspect(self.model.urdf, self.name, None if folder is None else Path(folder), select, ignore)
 
     def payload_link(self, name: str | None) -> int:
         """The index of the link that a payload acts at; for None the only last link.

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import accumulate
+from typing import Protocol
 
 import numpy as np
 
@@ -52,6 +53,14 @@ class Link:
             raise InputError(f"inertia of link {self.name!r} is not symmetric: {self.inertia.tolist()}")
 
 
+class Document(Protocol):
+    """A robot's file."""
+
+    @property
+    def text(self) -> str:
+        """The text of the file."""
+
+
 ROOT_JOINT, UNIVERSE = "root_joint", "universe"
 """Pinocchio's names for the joint of a floating base, and for what it floats in."""
 
@@ -66,7 +75,7 @@ class Model:
         links: all other links; parents before children, in Pinocchio's order for the same file.
         joints: `joints[i]` carries `links[i]`.
         gravity: the gravity field in the base frame, (3,) [m/s^2]: a free body accelerates by it.
-        urdf: the text that the model was read from; empty where it was made from numbers.
+        document: the file that the model was read from (`urdf/document.py`); None where it was made from numbers.
         floating: whether `with_floating_base` made it.
     """
 
@@ -75,7 +84,7 @@ class Model:
     links: tuple[Link, ...]
     joints: tuple[Joint, ...]
     gravity: Array = field(default_factory=lambda: np.array(STANDARD_GRAVITY))
-    urdf: str = ""
+    document: Document | None = None
     floating: bool = False
 
     def __post_init__(self) -> None:
@@ -102,6 +111,11 @@ class Model:
                     f"joint {joint.name!r} follows joint number {joint.mimic.joint}, which does not move by itself: "
                     "name the joint at the end of the chain"
                 )
+
+    @property
+    def urdf(self) -> str:
+        """The text that the model was read from; empty where it was made from numbers."""
+        return "" if self.document is None else self.document.text
 
     @cached_property
     def independent(self) -> tuple[int, ...]:

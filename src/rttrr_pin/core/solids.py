@@ -7,9 +7,9 @@ mechanics. Inertias are about the centre of mass, with URDF's sign: off the diag
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from math import cos, inf, pi, sin
+from math import inf, pi
 from typing import Protocol
 
 import numpy as np
@@ -134,7 +134,7 @@ class RigidBody:
         mass = density * solid.volume
         return cls(mass, np.zeros(3), mass * solid.specific_inertia())
 
-    def placed(self, xyz: Triple, rpy: Triple = (0.0, 0.0, 0.0)) -> RigidBody:
+    def placed(self, xyz: Sequence[float], rpy: Sequence[float] = (0.0, 0.0, 0.0)) -> RigidBody:
         """The same body seen from another frame: com' = p + R com, I' = R I R^T.
 
         Args:
@@ -185,7 +185,7 @@ class Part:
         return RigidBody.of(self.solid, self.material.density).placed(self.xyz, self.rpy)
 
 
-def rotation(rpy: Triple) -> Array:
+def rotation(rpy: Sequence[float]) -> Array:
     """The rotation matrix of URDF's roll, pitch, yaw: R = R_z(yaw) R_y(pitch) R_x(roll).
 
     Args:
@@ -194,11 +194,11 @@ def rotation(rpy: Triple) -> Array:
     Returns:
         R, (3, 3): maps vectors of the turned frame to the fixed frame.
     """
-    (cr, sr), (cp, sp), (cy, sy) = ((cos(angle), sin(angle)) for angle in rpy)
+    (sr, sp, sy), (cr, cp, cy) = np.sin(rpy), np.cos(rpy)
     return np.array(
         [
-            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
+            [cp * cy, sp * (sr * cy) - cr * sy, sp * (cr * cy) + sr * sy],
+            [cp * sy, sp * (sr * sy) + cr * cy, sp * (cr * sy) - sr * cy],
             [-sp, cp * sr, cp * cr],
         ]
     )

@@ -22,15 +22,12 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.core.rotations import SinCos, rotation
 from rttrr_pin.core.scalars import Arithmetic
 from rttrr_pin.errors import InputError
-from rttrr_pin.urdf.document import parse_xml
-from rttrr_pin.urdf.sources import Source
+from rttrr_pin.urdf.decimals import Number, NumberList
+from rttrr_pin.urdf.document import UrdfDocument, UrdfJoint, UrdfLink, UrdfMimic
 
 Triple = tuple[Fraction, Fraction, Fraction]
 InverseRoot = Callable[[Fraction], Scalar]
 Parameters = Literal["doubles", "read", "text"]
-
-ENTRIES = (("ixx", "ixy", "ixz"), ("ixy", "iyy", "iyz"), ("ixz", "iyz", "izz"))
-"""The tensor by URDF's words."""
 
 CLOSE = 1e-12
 """Of rotations and turned tensors, relative: two ways to compute one differ by a few eps, two files by more."""
@@ -102,14 +99,14 @@ def exact_parameters(model: Model, parameters: Literal["read", "text"]) -> Exact
     Raises:
         InputError: the model was made from numbers, or altered since it was read.
     """
-    if not model.urdf:
+    document = model.document
+    if not isinstance(document, UrdfDocument):
         raise InputError(
             f"robot {model.name!r} was made from numbers and has no file to take them from: pass parameters='doubles'"
         )
-    root = parse_xml(Source(model.name, model.urdf.encode()))
     value = _reader(parameters)
-    own = {joint.get("name"): _joint(joint, value) for joint in root.findall("joint")}
-    masses = {link.get("name"): _link(link, value) for link in root.findall("link")}
+    own = {name: _joint(joint, value) for name, joint in document.joints.items()}
+    masses = {name: _link(link, value) for name, link in document.links.items()}
     links = tuple(masses.get(link.name, AIR) for link in model.links)
     joints = tuple(own.get(joint.name, WELD) for joint in model.joints)
     for difference in _differences(model, links, joints):
@@ -121,47 +118,35 @@ def exact_parameters(model: Model, parameters: Literal["read", "text"]) -> Exact
     return ExactParameters(replace(model, joints=exact), links, joints)
 
 
-def _reader(numbers: str) -> Callable[[str], Fraction]:
-    """From a word to a rational."""
-    if numbers == "read":
-        return lambda word: Fraction(float(word))
-    from rttrr_pin.urdf.decimals import Number
-
-    return lambda word: Number.of(word).exact
+def _reader(numbers: str) -> Callable[[Number], Fraction]:
+    """From a number of the file to a rational."""
+    return (lambda number: Fraction(float(number))) if numbers == "read" else (lambda number: number.exact)
 
 
-def _link(link: Any, value: Callable[[str], Fraction]) -> WrittenLink:
-    inertial = link.find("inertial")
+def _link(link: UrdfLink, value: Callable[[Number], Fraction]) -> WrittenLink:
+    inertial = link.inertial
     if inertial is None:
         return AIR
-    tensor = inertial.find("inertia")
-    rows = tuple((value(tensor.get(x)), value(tensor.get(y)), value(tensor.get(z))) for x, y, z in ENTRIES)
-    xyz, rpy = (_triple(inertial.find("origin"), key, value) for key in ("xyz", "rpy"))
-    return WrittenLink(value(inertial.find("mass").get("value")), xyz, rpy, rows)
+    xyz, rpy = (_triple(words, value) for words in (inertial.origin.xyz, inertial.origin.rpy))
+    return WrittenLink(value(inertial.mass), xyz, rpy, inertial.tensor_of(value))
 
 
-def _joint(joint: Any, value: Callable[[str], Fraction]) -> WrittenJoint:
-    xyz, rpy = (_triple(joint.find("origin"), key, value) for key in ("xyz", "rpy"))
-    mimic, dynamics = joint.find("mimic"), joint.find("dynamics")
-
-    def number(xml: Any, key: str, default: str) -> Fraction:
-        return value(default if xml is None else xml.get(key, default))
-
+def _joint(joint: UrdfJoint, value: Callable[[Number], Fraction]) -> WrittenJoint:
+    mimic = UrdfMimic("", Number("1"), Number("0")) if joint.mimic is None else joint.mimic
     return WrittenJoint(
-        xyz,
-        rpy,
-        _triple(joint.find("axis"), "xyz", value),
-        "" if mimic is None else str(mimic.get("joint")),
-        number(mimic, "multiplier", "1"),
-        number(mimic, "offset", "0"),
-        number(dynamics, "damping", "0"),
-        number(dynamics, "friction", "0"),
+        _triple(joint.origin.xyz, value),
+        _triple(joint.origin.rpy, value),
+        _triple(joint.axis, value),
+        mimic.joint,
+        value(mimic.multiplier),
+        value(mimic.offset),
+        value(joint.damping),
+        value(joint.friction),
     )
 
 
-def _triple(xml: Any, key: str, value: Callable[[str], Fraction]) -> Triple:
-    """Three numbers of an element; zeros where it or the attribute is not there, as URDF has it."""
-    x, y, z = (value(word) for word in ("0 0 0" if xml is None else str(xml.get(key, "0 0 0"))).split())
+def _triple(words: NumberList, value: Callable[[Number], Fraction]) -> Triple:
+    x, y, z = map(value, words.each)
     return x, y, z
 
 

@@ -3,20 +3,21 @@
 from __future__ import annotations
 
 from rttrr_pin.inspection.fix import Repaired, repair
-from rttrr_pin.inspection.parsers import CONSUMERS, RULES
-from rttrr_pin.inspection.results import Does, Finding, Inspection, LinkRow, Severity, Verdict
-from rttrr_pin.inspection.run import inspect
+from rttrr_pin.inspection.parsers import PARSERS, RULES
+from rttrr_pin.inspection.results import Behaviour, Finding, LinkRow, RuleMatch, Severity, Verdict
+from rttrr_pin.inspection.run import Inspection, inspect
 from rttrr_pin.inspection.table import CHECKS
 
 __all__ = [
     "CHECKS",
-    "CONSUMERS",
+    "PARSERS",
     "RULES",
-    "Does",
+    "Behaviour",
     "Finding",
     "Inspection",
     "LinkRow",
     "Repaired",
+    "RuleMatch",
     "Severity",
     "Verdict",
     "inspect",

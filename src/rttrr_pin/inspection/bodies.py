@@ -7,15 +7,15 @@ from collections.abc import Iterator
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.inspection.exact import Shape
-from rttrr_pin.inspection.reading import Document
+from rttrr_pin.inspection.exact import Shape, shape
 from rttrr_pin.inspection.results import LinkRow
+from rttrr_pin.urdf.document import UrdfDocument
 
 ROUNDING = 1e-14
 """Of the largest: what is smaller is what diagonalising leaves of a zero. For show; verdicts are decided exactly."""
 
 
-def centre_of_mass(document: Document, rows: tuple[LinkRow, ...], mass: float) -> Array:
+def centre_of_mass(document: UrdfDocument, rows: tuple[LinkRow, ...], mass: float) -> Array:
     """Sum m_i (p_i + R_i c_i) / sum m_i."""
     if not mass:
         return np.full(3, np.nan)
@@ -26,21 +26,20 @@ def centre_of_mass(document: Document, rows: tuple[LinkRow, ...], mass: float) -
     return total / mass
 
 
-def tree(document: Document) -> Iterator[LinkRow]:
-    """The tree, parents first."""
+def tree(document: UrdfDocument) -> Iterator[LinkRow]:
+    """The links, parents before children."""
     for depth, name in document.walk():
         joint, inertial = document.carried_by.get(name), document.links[name].inertial
-        mass = 0.0 if inertial is None else float(inertial.mass)
-        tensor = np.zeros((3, 3)) if inertial is None else inertial.inertia
-        moments, axes = principal(tensor)
+        mass = 0.0 if inertial is None else float(inertial.mass) + 0.0
+        moments, axes = principal(np.zeros((3, 3)) if inertial is None else inertial.inertia)
         yield LinkRow(
             name=name,
             depth=depth,
             joint="" if joint is None else joint.name,
             joint_type="" if joint is None else joint.type,
             mass=mass,
-            com=np.zeros(3) if inertial is None else np.array(inertial.com),
-            shape=Shape.FRAME if inertial is None else inertial.shape,
+            com=np.zeros(3) if inertial is None else inertial.origin.p,
+            shape=Shape.FRAME if inertial is None else shape(inertial),
             moments=moments,
             axes=axes,
             semi_axes=semi_axes(mass, moments),

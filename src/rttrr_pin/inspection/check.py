@@ -1,4 +1,4 @@
-"""What a check is: a row of a table, and the function that it runs."""
+"""What a check is: a row of a table, and the function that looks for places where it does not hold."""
 
 from __future__ import annotations
 
@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from rttrr_pin.inspection.reading import Body, Connection, Document
 from rttrr_pin.inspection.results import Edit, Finding, Severity
 from rttrr_pin.inspection.shapes import Looks, looks_of
+from rttrr_pin.urdf.document import UrdfDocument, UrdfInertial, UrdfJoint, UrdfLink
 
 
 @dataclass(frozen=True)
@@ -20,27 +20,26 @@ class Subject:
         folder: where the file lies, to find meshes from; None where it is a text.
     """
 
-    document: Document
+    document: UrdfDocument
     folder: Path | None
     _looks: dict[str, Looks] = field(default_factory=dict)
 
-    def looks(self, body: Body) -> Looks:
+    def looks(self, link: UrdfLink) -> Looks:
         """The geometry of a link, loaded once."""
-        if body.name not in self._looks:
-            self._looks[body.name] = looks_of(body, self.folder)
-        return self._looks[body.name]
+        if link.name not in self._looks:
+            self._looks[link.name] = looks_of(link, self.folder)
+        return self._looks[link.name]
 
-    @property
-    def links(self) -> dict[str, Body]:
-        """The links by name."""
-        return self.document.links
+    def inertials(self) -> Iterator[tuple[UrdfLink, UrdfInertial]]:
+        """The links that have an <inertial>."""
+        return ((link, link.inertial) for link in self.document.links.values() if link.inertial is not None)
 
 
 @dataclass(frozen=True)
 class Observation:
-    """What the function of a check found at one place; the check adds its id and severity."""
+    """What the function of a check saw at one place; the check adds its id and severity."""
 
-    at: Body | Connection | Document
+    at: UrdfLink | UrdfJoint | UrdfDocument
     value: float | None
     unit: str
     reason: str
@@ -48,12 +47,15 @@ class Observation:
     repair: tuple[Edit, ...] = ()
 
 
+KINDS = {UrdfLink: "link", UrdfJoint: "joint", UrdfDocument: "robot"}
+
+
 @dataclass(frozen=True)
 class Check:
     """A row of the table of checks.
 
     Attributes:
-        id: stable; its letter is the kind of check: P physics, G geometry, T twins, J joints, C consumers.
+        id: stable; its letter is the kind of check: P physics, G geometry, T mirrored links, J joints, C conventions.
         severity: of its findings.
         statement: what holds for a file that passes.
         find: what looks for places where it does not.
@@ -67,9 +69,8 @@ class Check:
     def findings(self, subject: Subject) -> Iterator[Finding]:
         """The check's findings in a file."""
         for seen in self.find(subject):
-            kind = {Body: "link", Connection: "joint", Document: "robot"}[type(seen.at)]
-            line = 0 if isinstance(seen.at, Document) else seen.at.line
+            line = 0 if isinstance(seen.at, UrdfDocument) else seen.at.line
             yield Finding(
-                self.id, self.severity, kind, seen.at.name, line,
+                self.id, self.severity, KINDS[type(seen.at)], seen.at.name, line,
                 seen.value, seen.unit, seen.reason, seen.fix, seen.repair,
             )  # fmt: skip

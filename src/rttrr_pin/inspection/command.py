@@ -6,13 +6,14 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+from rich.text import Text
 
+from rttrr_pin.inspection import run as inspection
 from rttrr_pin.inspection.fix import repair
-from rttrr_pin.inspection.report import inspection_data, repair_data, show_inspection, show_repair
+from rttrr_pin.inspection.report import repair_data, repair_summary
 from rttrr_pin.loading import load
 from rttrr_pin.reporting.files import write_whole
 from rttrr_pin.reporting.output import AGREE, DISAGREE, Output, write_json
-from rttrr_pin.urdf.sources import EXAMPLE, bundled, examples, find
 
 
 def inspect(
@@ -35,25 +36,31 @@ def inspect(
 
     Exit code: 0 no errors, 1 errors (with --strict also warnings), 2 unusable input.
     """
-    result = load(robot).inspect(_folder(robot), select or (), ignore or ())
+    result = inspection.inspect(load(robot), select=select or (), ignore=ignore or ())
     repaired = None if fix is None else repair(result)
     if fix is not None and repaired is not None:
         write_whole(fix, repaired.text)
     extra = {} if repaired is None else {"repair": repair_data(repaired)}
-    write_json(json, lambda: inspection_data(result) | extra)
-    console = Output(quiet=quiet or json == "-", soft_wrap=False)
-    show_inspection(result, console, full)
+    write_json(json, lambda: result.to_dict() | extra)
+    console = Output(quiet=quiet or json == "-", soft_wrap=True)
+    console.print(coloured(result.summary(full, console.width)))
     if repaired is not None:
-        show_repair(repaired, str(fix), console)
+        console.print(Text(repair_summary(repaired, str(fix))))
     return AGREE if result.passes(strict) else DISAGREE
 
 
-def _folder(robot: str) -> Path | None:
-    """Where the file of a robot lies, whose meshes are looked for from there; None for a text."""
-    if robot.startswith(EXAMPLE):
-        place = examples().get(robot.removeprefix(EXAMPLE))
-        return None if place is None else place.parent
-    if robot in bundled():
-        return bundled()[robot].parent
-    path = Path(find(robot).name.removesuffix(" (as xacro expands it)"))
-    return path.absolute().parent if path.is_file() else None
+COLOURS = {
+    r"(?m)^(error|FAIL)|(?<=: )refuse\b|\bimpossible\b": "bold red",
+    r"(?m)^warning|(?<=: )(either|alter|warn)\b": "yellow",
+    r"(?m)^PASS|(?<=: )accept\b": "green",
+    r"(?m)^note": "dim",
+}
+"""Words of the summary."""
+
+
+def coloured(summary: str) -> Text:
+    """The summary with its verdicts in colour."""
+    text = Text(summary)
+    for words, colour in COLOURS.items():
+        text.highlight_regex(words, colour)
+    return text

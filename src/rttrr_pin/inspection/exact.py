@@ -15,11 +15,13 @@ from __future__ import annotations
 import enum
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
+from functools import lru_cache
 from itertools import combinations
 
 import numpy as np
 
 from rttrr_pin.urdf.decimals import Number
+from rttrr_pin.urdf.document import UrdfInertial
 
 Matrix = tuple[tuple[Fraction, ...], ...]
 
@@ -104,6 +106,33 @@ def shape_of(mass: Fraction, rank: int | None) -> Shape:
     if mass == 0:
         return Shape.FRAME
     return (Shape.POINT, Shape.ROD, Shape.PLATE, Shape.SOLID)[rank]
+
+
+@lru_cache(maxsize=4096)
+def is_positive(inertial: UrdfInertial) -> bool:
+    """Whether the tensor is positive semidefinite."""
+    return rank_if_positive(_tensor(inertial)) is not None
+
+
+@lru_cache(maxsize=4096)
+def rank(inertial: UrdfInertial) -> int | None:
+    """The rank of the second moments about the centre of mass; None where they are not positive semidefinite."""
+    return rank_if_positive(second_moments(_tensor(inertial)))
+
+
+def shape(inertial: UrdfInertial) -> Shape:
+    """What body has this mass and inertia."""
+    return shape_of(inertial.mass.exact, rank(inertial))
+
+
+@lru_cache(maxsize=4096)
+def nearest_possible(inertial: UrdfInertial) -> dict[str, Fraction] | None:
+    """Entries of a tensor that a body can have and that rounds to the ones written, if there is one."""
+    return within_rounding(inertial.entries)
+
+
+def _tensor(inertial: UrdfInertial) -> Matrix:
+    return inertial.tensor_of(lambda number: number.exact)
 
 
 def within_rounding(entries: dict[str, Number]) -> dict[str, Fraction] | None:

@@ -7,7 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
-from rttrr_pin.inspection.results import Edit, Finding, Inspection
+from rttrr_pin.inspection.results import Edit, Finding
+from rttrr_pin.inspection.run import Inspection
 
 WHERE = ("robot", "link", "inertial")
 """The elements around the tags that are edited."""
@@ -34,21 +35,21 @@ def repair(inspection: Inspection) -> Repaired:
     A link with more than one finding is left alone: its numbers have no one certain meaning.
     """
     doubtful = _doubtful(inspection.findings)
-    done = [found for found in inspection.findings if found.repair and found.name not in doubtful]
-    edits = [edit for found in done for edit in found.repair]
+    done = [finding for finding in inspection.findings if finding.repair and finding.name not in doubtful]
+    edits = [edit for finding in done for edit in finding.repair]
     return Repaired(
         text=apply(inspection.text, edits),
         done=tuple(done),
-        left=tuple(found for found in inspection.findings if found not in done),
+        left=tuple(finding for finding in inspection.findings if finding not in done),
     )
 
 
 def _doubtful(findings: Iterable[Finding]) -> set[str]:
-    """Links for which two findings would write different numbers, or physics finds another fault."""
+    """Links for which two findings would write different numbers."""
     repairs: dict[str, set[tuple[Edit, ...]]] = {}
-    for found in findings:
-        if found.kind == "link" and found.repair:
-            repairs.setdefault(found.name, set()).add(found.repair)
+    for finding in findings:
+        if finding.kind == "link" and finding.repair:
+            repairs.setdefault(finding.name, set()).add(finding.repair)
     return {name for name, several in repairs.items() if len(several) > 1}
 
 
@@ -72,12 +73,7 @@ def apply(text: str, edits: Iterable[Edit]) -> str:
 def _replaced(tail: bytes, edit: Edit) -> bytes:
     """The text from a tag on, with one attribute of that tag changed; its quotation marks stay."""
     pattern = rf"(\s{edit.attribute}\s*=\s*)(\"[^\"]*\"|'[^']*')".encode()
-    return re.sub(
-        pattern,
-        lambda found: found[1] + found[2][:1] + edit.text.encode() + found[2][-1:],
-        tail,
-        count=1,
-    )
+    return re.sub(pattern, lambda match: match[1] + match[2][:1] + edit.text.encode() + match[2][-1:], tail, count=1)
 
 
 @dataclass

@@ -6,8 +6,8 @@ import math
 from collections.abc import Iterator
 
 from rttrr_pin.inspection.check import Check, Observation, Subject
-from rttrr_pin.inspection.reading import Connection
 from rttrr_pin.inspection.results import Severity
+from rttrr_pin.urdf.document import UrdfJoint
 
 LIMITED = ("revolute", "prismatic")
 """Types for which URDF requires a <limit>."""
@@ -19,14 +19,18 @@ MOST_TURNS = 4.0 * math.pi
 """Radians to either side; cables allow less, and 180 written in degrees is more."""
 
 
-def _limited(subject: Subject) -> Iterator[tuple[Connection, dict[str, float]]]:
+def _limited(subject: Subject) -> Iterator[tuple[UrdfJoint, dict[str, float]]]:
     """Revolute and prismatic joints that have a <limit>."""
-    return (
-        (joint, joint.limit) for joint in subject.document.joints if joint.type in LIMITED and joint.limit is not None
-    )
+    joints = subject.document.joints.values()
+    return ((joint, joint.limits) for joint in joints if joint.type in LIMITED and joint.limit is not None)
 
 
-def _unit(joint: Connection) -> str:
+def _reach(limit: dict[str, float]) -> float:
+    """The farther of the two ends."""
+    return max(abs(limit.get("lower", 0.0)), abs(limit.get("upper", 0.0)))
+
+
+def _unit(joint: UrdfJoint) -> str:
     return "m" if joint.type == "prismatic" else "rad"
 
 
@@ -47,16 +51,16 @@ def powerless(subject: Subject) -> Iterator[Observation]:
     for joint, limit in _limited(subject):
         zero = [key for key in ("effort", "velocity") if limit.get(key) == 0.0]
         if zero:
-            told = " and ".join(zero)
+            words = " and ".join(zero)
             yield Observation(
-                joint, 0.0, "", f"the {told} limit{'s are' if len(zero) > 1 else ' is'} 0",
-                f"write the {told} of the drive, or mimic or fix the joint if it has none",
+                joint, 0.0, "", f"the {words} limit{'s are' if len(zero) > 1 else ' is'} 0",
+                f"write the {words} of the drive, or mimic or fix the joint if it has none",
             )  # fmt: skip
 
 
 def without_limit(subject: Subject) -> Iterator[Observation]:
     """What URDF requires is missing."""
-    for joint in subject.document.joints:
+    for joint in subject.document.joints.values():
         if joint.type in LIMITED and joint.limit is None:
             yield Observation(
                 joint, None, "", f"a {joint.type} joint must have a <limit>, and has none",
@@ -73,7 +77,7 @@ def without_limit(subject: Subject) -> Iterator[Observation]:
 def endless_slide(subject: Subject) -> Iterator[Observation]:
     """A prismatic joint that may slide anywhere."""
     for joint, limit in _limited(subject):
-        reach = max(abs(limit.get("lower", 0.0)), abs(limit.get("upper", 0.0)))
+        reach = _reach(limit)
         if joint.type == "prismatic" and reach > FARTHEST:
             yield Observation(joint, reach, "m", "the joint may slide this far", "write the length of its guide in m")
 
@@ -81,7 +85,7 @@ def endless_slide(subject: Subject) -> Iterator[Observation]:
 def degrees(subject: Subject) -> Iterator[Observation]:
     """A revolute range that reads as degrees."""
     for joint, limit in _limited(subject):
-        reach = max(abs(limit.get("lower", 0.0)), abs(limit.get("upper", 0.0)))
+        reach = _reach(limit)
         if joint.type == "revolute" and reach > MOST_TURNS:
             turns = reach / (2.0 * math.pi)
             whole = reach <= 720.0 and reach == round(reach)

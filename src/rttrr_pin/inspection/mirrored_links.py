@@ -9,8 +9,8 @@ import numpy as np
 
 from rttrr_pin.inspection.bodies import principal
 from rttrr_pin.inspection.check import Check, Observation, Subject
-from rttrr_pin.inspection.reading import Body, Mass
 from rttrr_pin.inspection.results import Severity
+from rttrr_pin.urdf.document import UrdfInertial, UrdfLink
 
 ALIKE = 1e-3
 """Relative: CAD programs write three digits at least, and mirrored parts have the same ones."""
@@ -39,25 +39,26 @@ def _same_case(word: str, like: str) -> str:
     return word.capitalize() if like[0].isupper() else word
 
 
-def _pairs(subject: Subject) -> Iterator[tuple[Body, Mass, Body, Mass]]:
-    """Pairs that both have mass, the first of the file first; of several possible twins the most alike."""
+def _pairs(subject: Subject) -> Iterator[tuple[UrdfLink, UrdfInertial, UrdfLink, UrdfInertial]]:
+    """Pairs that both have mass, the first of the file first; of several possible mirror images the most alike."""
     seen = set[str]()
-    for name, body in subject.links.items():
+    links = subject.document.links
+    for name, link in links.items():
         seen.add(name)
-        twins = [subject.links[other] for other in other_side(name) if other in subject.links]
-        own = body.inertial
-        if own is None or any(twin.name in seen for twin in twins):
+        mirrored = [links[other] for other in other_side(name) if other in links]
+        own = link.inertial
+        if own is None or any(other.name in seen for other in mirrored):
             continue
-        massive = [(twin, twin.inertial) for twin in twins if twin.inertial is not None]
+        massive = [(other, other.inertial) for other in mirrored if other.inertial is not None]
         if massive:
-            _, k = min((_difference(own, other), k) for k, (_, other) in enumerate(massive))
-            yield body, own, *massive[k]
+            _, k = min((_difference(own, inertial), k) for k, (_, inertial) in enumerate(massive))
+            yield link, own, *massive[k]
 
 
-def _difference(one: Mass, other: Mass) -> tuple[float, float, float]:
+def _difference(one: UrdfInertial, other: UrdfInertial) -> tuple[float, float, float]:
     """Relative differences of mass, of principal moments, and of the centre of mass's distance from the origin."""
-    moments = [principal(inertial.written)[0] for inertial in (one, other)]
-    reach = [float(np.linalg.norm(inertial.com)) for inertial in (one, other)]
+    moments = [principal(inertial.tensor)[0] for inertial in (one, other)]
+    reach = [float(np.linalg.norm(inertial.origin.p)) for inertial in (one, other)]
     gaps = (
         (abs(float(one.mass) - float(other.mass)), max(abs(float(one.mass)), abs(float(other.mass)))),
         (float(np.abs(moments[0] - moments[1]).max()), float(np.abs(moments).max())),
@@ -68,30 +69,30 @@ def _difference(one: Mass, other: Mass) -> tuple[float, float, float]:
 
 
 def mass_differs(subject: Subject) -> Iterator[Observation]:
-    """Twins of different mass."""
-    for body, one, twin, other in _pairs(subject):
+    """Mirrored links of different mass."""
+    for link, one, image, other in _pairs(subject):
         if _difference(one, other)[0] > ALIKE:
             a, b = float(one.mass), float(other.mass)
             yield Observation(
-                body, a - b, "kg", f"its mass is {a:.6g} kg, that of its twin {twin.name!r} {b:.6g} kg",
+                link, a - b, "kg", f"its mass is {a:.6g} kg, that of its mirror image {image.name!r} {b:.6g} kg",
                 "find out which of the two is right, and write it for both",
             )  # fmt: skip
 
 
 def shape_differs(subject: Subject) -> Iterator[Observation]:
-    """Twins of the same mass whose tensors or centres of mass are not mirror images."""
-    for body, one, twin, other in _pairs(subject):
+    """Mirrored links of the same mass whose tensors or centres of mass are not mirror images."""
+    for link, one, image, other in _pairs(subject):
         mass, inertia, com = _difference(one, other)
         if mass <= ALIKE and max(inertia, com) > ALIKE:
             parts = (("principal moments", inertia), ("distance of the centre of mass from the origin", com))
-            told = " and ".join(f"{what} (by {gap:.2g} of it)" for what, gap in parts if gap > ALIKE)
+            differing = " and ".join(f"{what} (by {gap:.2g} of it)" for what, gap in parts if gap > ALIKE)
             yield Observation(
-                body, max(inertia, com), "", f"it differs from its twin {twin.name!r} in {told}",
+                link, max(inertia, com), "", f"it differs from its mirror image {image.name!r} in {differing}",
                 "mirror images have the same: compute both anew",
             )  # fmt: skip
 
 
 CHECKS = (
-    Check("T301", Severity.WARNING, "Left and right twins have the same mass.", mass_differs),
-    Check("T302", Severity.WARNING, "Left and right twins are mirror images.", shape_differs),
+    Check("T301", Severity.WARNING, "Left and right links have the same mass.", mass_differs),
+    Check("T302", Severity.WARNING, "Left and right links are mirror images.", shape_differs),
 )

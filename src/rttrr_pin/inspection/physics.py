@@ -7,34 +7,30 @@ from fractions import Fraction
 
 from rttrr_pin.inspection.bodies import principal
 from rttrr_pin.inspection.check import Check, Observation, Subject
-from rttrr_pin.inspection.exact import Shape
-from rttrr_pin.inspection.reading import Body, Mass
+from rttrr_pin.inspection.exact import Shape, is_positive, nearest_possible, rank, shape
 from rttrr_pin.inspection.results import Edit, Severity
 from rttrr_pin.urdf.decimals import text_of
+from rttrr_pin.urdf.document import UrdfInertial
 
 
-def _inertials(subject: Subject) -> Iterator[tuple[Body, Mass]]:
-    return ((body, body.inertial) for body in subject.links.values() if body.inertial is not None)
-
-
-def _empty(inertial: Mass) -> bool:
+def _empty(inertial: UrdfInertial) -> bool:
     """Whether all six entries are zero."""
     return not any(number.exact for number in inertial.entries.values())
 
 
 def negative_mass(subject: Subject) -> Iterator[Observation]:
     """Mass below zero."""
-    for body, inertial in _inertials(subject):
+    for link, inertial in subject.inertials():
         if inertial.mass.exact < 0:
-            yield Observation(body, float(inertial.mass), "kg", "the mass is negative", "write the body's mass in kg")
+            yield Observation(link, float(inertial.mass), "kg", "the mass is negative", "write the body's mass in kg")
 
 
 def tensor_without_mass(subject: Subject) -> Iterator[Observation]:
     """No mass, but a tensor."""
-    for body, inertial in _inertials(subject):
+    for link, inertial in subject.inertials():
         if inertial.mass.exact == 0 and not _empty(inertial):
             yield Observation(
-                body, 0.0, "kg", "the mass is zero, the inertia is not",
+                link, 0.0, "kg", "the mass is zero, the inertia is not",
                 "write the mass, or zeros for all of the inertia if the link is only a frame",
             )  # fmt: skip
 
@@ -42,15 +38,14 @@ def tensor_without_mass(subject: Subject) -> Iterator[Observation]:
 def moving_without_mass(subject: Subject) -> Iterator[Observation]:
     """A moving link without mass that carries none either: its joint's torque moves nothing."""
     document = subject.document
-    massive = {
-        name: body.inertial is not None and body.inertial.mass.exact != 0 for name, body in subject.links.items()
-    }
+    massive = dict.fromkeys(document.links, False)
+    massive |= {link.name: inertial.mass.exact != 0 for link, inertial in subject.inertials()}
     for _, name in reversed(list(document.walk())):
         massive[name] = massive[name] or any(massive[joint.child] for joint in document.children[name])
-    for joint in document.joints:
+    for joint in document.joints.values():
         if joint.moves and not massive[joint.child]:
             yield Observation(
-                subject.links[joint.child], 0.0, "kg",
+                document.links[joint.child], 0.0, "kg",
                 f"joint {joint.name!r} moves it, but there is no mass on it or beyond: the mass matrix is singular",
                 "give it a mass and an inertia, or make the joint fixed",
             )  # fmt: skip
@@ -58,10 +53,10 @@ def moving_without_mass(subject: Subject) -> Iterator[Observation]:
 
 def indefinite(subject: Subject) -> Iterator[Observation]:
     """A negative moment of inertia about some axis."""
-    for body, inertial in _inertials(subject):
-        if not inertial.positive and inertial.mended is None:
+    for link, inertial in subject.inertials():
+        if not is_positive(inertial) and nearest_possible(inertial) is None:
             yield Observation(
-                body, float(principal(inertial.written)[0][0]), "kg m^2",
+                link, float(principal(inertial.tensor)[0][0]), "kg m^2",
                 "the smallest principal moment is negative: the tensor is not positive definite",
                 "compute the tensor anew; a wrong sign or slot among ixy, ixz, iyz does this",
             )  # fmt: skip
@@ -69,11 +64,11 @@ def indefinite(subject: Subject) -> Iterator[Observation]:
 
 def triangle(subject: Subject) -> Iterator[Observation]:
     """I1 + I2 < I3: Sigma, and with it the pseudo-inertia, has a negative eigenvalue."""
-    for body, inertial in _inertials(subject):
-        if _positive_but_impossible(inertial) and inertial.mended is None:
-            low, mid, high = principal(inertial.written)[0]
+    for link, inertial in subject.inertials():
+        if is_positive(inertial) and rank(inertial) is None and nearest_possible(inertial) is None:
+            low, mid, high = principal(inertial.tensor)[0]
             yield Observation(
-                body, float(high - low - mid), "kg m^2",
+                link, float(high - low - mid), "kg m^2",
                 f"of the principal moments {low:.4g}, {mid:.4g} and {high:.4g} kg m^2, the last exceeds the sum of the "
                 "others: no density has them",
                 "compute the tensor anew, about the centre of mass, in kg m^2",
@@ -82,30 +77,25 @@ def triangle(subject: Subject) -> Iterator[Observation]:
 
 def triangle_by_rounding(subject: Subject) -> Iterator[Observation]:
     """No body has these digits, but one has numbers that round to them."""
-    for body, inertial in _inertials(subject):
-        if inertial.rank is None:
-            mended = inertial.mended
-            if mended is not None:
-                low, mid, high = principal(inertial.written)[0]
-                yield Observation(
-                    body, float(high - low - mid), "kg m^2",
-                    "the largest principal moment exceeds the sum of the others by less than the last digits' rounding",
-                    "write more digits, or take the repair: it rounds to the same digits",
-                    _repair(body.name, inertial, mended),
-                )  # fmt: skip
+    for link, inertial in subject.inertials():
+        possible = nearest_possible(inertial) if rank(inertial) is None else None
+        if possible is not None:
+            low, mid, high = principal(inertial.tensor)[0]
+            yield Observation(
+                link, float(high - low - mid), "kg m^2",
+                "the largest principal moment exceeds the sum of the others by less than the last digits' rounding",
+                "write more digits, or take the repair: it rounds to the same digits",
+                _repair(link.name, inertial, possible),
+            )  # fmt: skip
 
 
-def _repair(link: str, inertial: Mass, mended: dict[str, Fraction]) -> tuple[Edit, ...]:
+def _repair(link: str, inertial: UrdfInertial, possible: dict[str, Fraction]) -> tuple[Edit, ...]:
     """The entries that moved, with all their digits: what is written is what was checked."""
     return tuple(
         Edit(link, "inertia", name, text_of(value))
-        for name, value in mended.items()
+        for name, value in possible.items()
         if value != inertial.entries[name].exact
     )
-
-
-def _positive_but_impossible(inertial: Mass) -> bool:
-    return inertial.positive and inertial.rank is None
 
 
 BOUNDARY = {
@@ -116,21 +106,21 @@ BOUNDARY = {
 
 def boundary(subject: Subject) -> Iterator[Observation]:
     """Flat plates and thin rods, which are possible and at the very edge."""
-    for body, inertial in _inertials(subject):
-        shape = inertial.shape
-        if shape in BOUNDARY:
+    for link, inertial in subject.inertials():
+        body = shape(inertial)
+        if body in BOUNDARY:
             yield Observation(
-                body, None, "", BOUNDARY[shape],
-                "give the body its thickness: at the boundary, a consumer's rounding decides what it does",
+                link, None, "", BOUNDARY[body],
+                "give the body its thickness: at the boundary, a parser's rounding decides what it does",
             )  # fmt: skip
 
 
 def point_mass(subject: Subject) -> Iterator[Observation]:
     """Mass, but no tensor."""
-    for body, inertial in _inertials(subject):
-        if inertial.shape is Shape.POINT:
+    for link, inertial in subject.inertials():
+        if shape(inertial) is Shape.POINT:
             yield Observation(
-                body, float(inertial.mass), "kg", "there is a mass, but the inertia is zero: a point",
+                link, float(inertial.mass), "kg", "there is a mass, but the inertia is zero: a point",
                 "write the inertia about the centre of mass",
             )  # fmt: skip
 

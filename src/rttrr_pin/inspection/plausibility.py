@@ -9,13 +9,12 @@ from itertools import permutations
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.solids import rotation
 from rttrr_pin.inspection.bodies import principal
 from rttrr_pin.inspection.check import Check, Observation, Subject
 from rttrr_pin.inspection.exact import DIAGONAL
-from rttrr_pin.inspection.reading import Body, Mass
 from rttrr_pin.inspection.results import Edit, Severity
 from rttrr_pin.inspection.shapes import Filled, Looks
+from rttrr_pin.urdf.document import UrdfInertial, UrdfLink
 
 LARGEST_GYRATION = 1.5
 """Radius of gyration over the distance of the farthest point drawn. No mass inside the drawing gives more than 1."""
@@ -51,10 +50,10 @@ SURE_FAR = 0.02
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A link whose inertia can be held against its geometry."""
+    """A link whose inertia can be compared with its geometry."""
 
-    body: Body
-    inertial: Mass
+    link: UrdfLink
+    inertial: UrdfInertial
     looks: Looks
 
     @property
@@ -65,23 +64,21 @@ class Case:
     @property
     def reach(self) -> float:
         """From the centre of mass to the farthest point drawn [m]."""
-        return float(np.linalg.norm(self.looks.points - np.array(self.inertial.com), axis=1).max())
+        return float(np.linalg.norm(self.looks.points - self.inertial.origin.p, axis=1).max())
 
     @property
     def gyration(self) -> float:
         """The largest radius of gyration [m]."""
-        return float(np.sqrt(max(principal(self.inertial.written)[0][-1], 0.0) / self.mass))
+        return float(np.sqrt(max(principal(self.inertial.tensor)[0][-1], 0.0) / self.mass))
 
 
 def _cases(subject: Subject) -> Iterator[Case]:
     """Links with mass, a tensor, and geometry that could be read."""
-    for body in subject.links.values():
-        inertial = body.inertial
-        if inertial is None or inertial.mass.exact <= 0 or not any(n.exact for n in inertial.entries.values()):
-            continue
-        looks = subject.looks(body)
-        if looks.known:
-            yield Case(body, inertial, looks)
+    for link, inertial in subject.inertials():
+        if inertial.mass.exact > 0 and any(entry.exact for entry in inertial.entries.values()):
+            looks = subject.looks(link)
+            if looks.known:
+                yield Case(link, inertial, looks)
 
 
 def too_wide(subject: Subject) -> Iterator[Observation]:
@@ -89,7 +86,7 @@ def too_wide(subject: Subject) -> Iterator[Observation]:
     for case in _cases(subject):
         if case.gyration > LARGEST_GYRATION * case.reach:
             yield Observation(
-                case.body, case.gyration, "m",
+                case.link, case.gyration, "m",
                 f"the radius of gyration is {case.gyration:.3g} m, but nothing is drawn farther than "
                 f"{case.reach:.3g} m from the centre of mass",
                 "check the inertia's unit (kg m^2), and that mass and inertia belong together" + _unit_hint(case),
@@ -101,7 +98,7 @@ def too_narrow(subject: Subject) -> Iterator[Observation]:
     for case in _cases(subject):
         if case.gyration < SMALLEST_GYRATION * case.reach:
             yield Observation(
-                case.body, case.gyration, "m",
+                case.link, case.gyration, "m",
                 f"the radius of gyration is {case.gyration:.3g} m, but the link is drawn up to {case.reach:.3g} m from "
                 "the centre of mass: nearly all mass would sit in the middle",
                 "check the inertia's unit (kg m^2) and for placeholders such as 1e-6" + _unit_hint(case),
@@ -112,7 +109,7 @@ def _unit_hint(case: Case) -> str:
     """The unit in which the file's tensor would suit the hull, if there is one."""
     if not case.looks.solids:
         return ""
-    ratio = float(np.trace(case.inertial.written) / np.trace(case.looks.solids[-1].inertia(case.mass)))
+    ratio = float(np.trace(case.inertial.tensor) / np.trace(case.looks.solids[-1].inertia(case.mass)))
     fitting = [unit for factor, unit in UNITS if 1 / 3 < ratio / factor < 3]
     return f"; in {fitting[0]} it would suit" if fitting else ""
 
@@ -127,7 +124,7 @@ def density(subject: Subject) -> Iterator[Observation]:
             heavy = value > DENSITIES[1]
             like = "denser than any metal" if heavy else "like a gas"
             yield Observation(
-                case.body, value, "kg/m^3",
+                case.link, value, "kg/m^3",
                 f"{case.mass:.4g} kg in {case.looks.volume:.3g} m^3 is {like}",
                 f"check the mass ({'g' if heavy else 't'} for kg?) and the geometry's unit (mm for m?)",
             )  # fmt: skip
@@ -137,12 +134,12 @@ def com_outside(subject: Subject) -> Iterator[Observation]:
     """The centre of mass lies far from all that is drawn."""
     for case in _cases(subject):
         low, high = case.looks.points.min(axis=0), case.looks.points.max(axis=0)
-        com = np.array(case.inertial.com)
+        com = case.inertial.origin.p
         away = float(np.linalg.norm(np.maximum(np.maximum(low - com, com - high), 0.0)))
         size = float(np.linalg.norm(high - low)) / 2
         if away > OUTSIDE * size:
             yield Observation(
-                case.body, away, "m",
+                case.link, away, "m",
                 f"the centre of mass lies {away:.3g} m outside the box around the geometry, whose half diagonal is "
                 f"{size:.3g} m",
                 "check the <origin> of the <inertial>: its unit (m), its sign, and that it is in the link's frame",
@@ -155,50 +152,52 @@ class Reading:
 
     Attributes:
         written: the tensor that would have to be written, in the inertial frame, (3, 3) [kg m^2].
-        told: what would have happened.
+        meaning: how the numbers would have to be understood.
         sure: whether nothing else explains an exact match: a factor of 1000 may be the mass's, slots the drawing's.
     """
 
     written: Array
-    told: str
+    meaning: str
     sure: bool = True
 
 
-def _about_origin(inertial: Mass) -> Iterator[Reading]:
+def _about_origin(inertial: UrdfInertial) -> Iterator[Reading]:
     """The numbers are about the link's origin: I - m (c.c 1 - c c^T) is about the centre of mass."""
-    c, R = np.array(inertial.com), rotation(inertial.rpy)
+    c, R = inertial.origin.p, inertial.origin.R
     if c.any():
         shifted = inertial.inertia - float(inertial.mass) * (c @ c * np.eye(3) - np.outer(c, c))
         yield Reading(R.T @ shifted @ R, "about the link's origin and not about the centre of mass")
 
 
-def _slots(inertial: Mass) -> Iterator[Reading]:
+def _slots(inertial: UrdfInertial) -> Iterator[Reading]:
     """ixx, iyy, izz stand in another order."""
     for order in list(permutations(range(3)))[1:]:
-        written = inertial.written.copy()
-        written[range(3), range(3)] = inertial.written.diagonal()[list(order)]
+        written = inertial.tensor.copy()
+        written[range(3), range(3)] = inertial.tensor.diagonal()[list(order)]
         names = ", ".join(DIAGONAL[k] for k in order)
         yield Reading(written, f"in the wrong slots: ixx, iyy, izz hold what belongs to {names}", sure=False)
 
 
-def _powers(inertial: Mass) -> Iterator[Reading]:
+def _powers(inertial: UrdfInertial) -> Iterator[Reading]:
     """Another unit."""
     for factor, unit in UNITS:
-        yield Reading(inertial.written / factor, f"in {unit} and not in kg m^2", sure=factor >= 1e6)
+        yield Reading(inertial.tensor / factor, f"in {unit} and not in kg m^2", sure=factor >= 1e6)
 
 
-def _misread(subject: Subject, readings: Callable[[Mass], Iterator[Reading]], fix: str) -> Iterator[Observation]:
+def _misread(
+    subject: Subject, readings: Callable[[UrdfInertial], Iterator[Reading]], fix: str
+) -> Iterator[Observation]:
     """Links whose tensor suits their solid only in another reading."""
     for case in _cases(subject):
-        found = _best(case, list(readings(case.inertial)))
-        if found is not None:
-            reading, solid, off, gap = found
+        best = _best(case, list(readings(case.inertial)))
+        if best is not None:
+            reading, solid, off, gap = best
             plausible = DENSITIES[0] <= case.mass / solid.body.mass <= DENSITIES[1]
             sure = plausible and solid.exact and gap < EXACTLY and reading.sure
             yield Observation(
-                case.body, off, "",
+                case.link, off, "",
                 f"the inertia differs from that of {solid.label} by {off:.3g} of it, and by {gap:.2g} if it is "
-                f"{reading.told}",
+                f"{reading.meaning}",
                 fix, _rewrite(case, reading) if sure else (),
             )  # fmt: skip
 
@@ -207,7 +206,7 @@ def _best(case: Case, readings: list[Reading]) -> tuple[Reading, Filled, float, 
     """The reading that comes nearest to a solid; None where the file's own numbers suit one, or no reading does."""
     solids = [(solid, solid.inertia(case.mass)) for solid in case.looks.solids]
     offs = [_distance(case.inertial.inertia, wanted) for _, wanted in solids]
-    R, best = rotation(case.inertial.rpy), None
+    R, best = case.inertial.origin.R, None
     for (solid, wanted), off in zip(solids, offs, strict=True):
         for reading in readings:
             gap = _distance(R @ reading.written @ R.T, wanted)
@@ -228,7 +227,7 @@ def _rewrite(case: Case, reading: Reading) -> tuple[Edit, ...]:
     small = 1e-12 * float(np.abs(reading.written).max())
     values = {name: float(reading.written[at]) for name, at in places.items()}
     return tuple(
-        Edit(case.body.name, "inertia", name, f"{0.0 if abs(value) < small else value:.9g}")
+        Edit(case.link.name, "inertia", name, f"{0.0 if abs(value) < small else value:.9g}")
         for name, value in values.items()
         if value != float(case.inertial.entries[name])
     )
@@ -252,15 +251,13 @@ def wrong_power(subject: Subject) -> Iterator[Observation]:
 def unknown(subject: Subject) -> Iterator[Observation]:
     """Links with mass whose geometry could not be read."""
     lost = [
-        body.name
-        for body in subject.links.values()
-        if body.inertial is not None and body.inertial.mass.exact > 0 and subject.looks(body).missing
+        link.name for link, inertial in subject.inertials() if inertial.mass.exact > 0 and subject.looks(link).missing
     ]
     if lost:
         shown = ", ".join(lost[:3]) + (", ..." if len(lost) > 3 else "")
         yield Observation(
             subject.document, float(len(lost)), "links",
-            f"not held against their geometry, whose meshes were not found: {shown}",
+            f"not compared with their geometry, whose meshes were not found: {shown}",
             "inspect the file where its meshes lie",
         )  # fmt: skip
 

@@ -1,10 +1,9 @@
-"""What an inspection finds, as data."""
+"""What an inspection is made of: links, findings, and the verdicts of parsers."""
 
 from __future__ import annotations
 
 import enum
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.inspection.exact import Shape
@@ -18,8 +17,8 @@ class Severity(enum.StrEnum):
     NOTE = "note"
 
 
-class Does(enum.StrEnum):
-    """What a consumer does with a file, from best to worst."""
+class Behaviour(enum.StrEnum):
+    """What a parser does with a file, from best to worst."""
 
     ACCEPT = "accept"
     WARN = "warn"
@@ -29,11 +28,11 @@ class Does(enum.StrEnum):
 
 
 MEANING = {
-    Does.ACCEPT: "loads the robot as written",
-    Does.WARN: "loads the robot as written, and prints a warning",
-    Does.ALTER: "loads another robot than the one written",
-    Does.EITHER: "the consumer's version, or its own rounding, decides",
-    Does.REFUSE: "does not load the file",
+    Behaviour.ACCEPT: "loads the robot as written",
+    Behaviour.WARN: "loads the robot as written, and prints a warning",
+    Behaviour.ALTER: "loads another robot than the one written",
+    Behaviour.EITHER: "the parser's version, or its own rounding, decides",
+    Behaviour.REFUSE: "does not load the file",
 }
 
 
@@ -116,19 +115,19 @@ class LinkRow:
 
 
 @dataclass(frozen=True)
-class Hit:
-    """A rule of a consumer that applies.
+class RuleMatch:
+    """A rule of a parser that applies.
 
     Attributes:
         rule: the rule's id.
-        does: what the consumer does.
+        behaviour: what the parser does.
         name: the link or joint.
         reason: the rule in a sentence.
-        source: where the consumer says so.
+        source: where the parser's source says so.
     """
 
     rule: str
-    does: Does
+    behaviour: Behaviour
     name: str
     reason: str
     source: str
@@ -136,59 +135,14 @@ class Hit:
 
 @dataclass(frozen=True)
 class Verdict:
-    """What one consumer does with the file.
+    """What one parser does with the file.
 
     Attributes:
-        consumer: its name.
-        does: the worst of what its rules say.
-        hits: the rules that apply, and where.
+        parser: its name.
+        behaviour: the worst of what its rules say.
+        matches: the rules that apply, and where.
     """
 
-    consumer: str
-    does: Does
-    hits: tuple[Hit, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class Inspection:
-    """A robot's file, looked at.
-
-    Attributes:
-        robot: its name.
-        links: the tree, parents before children.
-        mass: the sum over all links, the root's among them [kg].
-        com: centre of mass of the whole robot in the root's frame, all coordinates zero, (3,) [m]; NaN without mass.
-        findings: what was found, in the order of the file.
-        verdicts: what each consumer does with the file.
-        text: the file's text.
-    """
-
-    robot: str
-    links: tuple[LinkRow, ...]
-    mass: float
-    com: Array
-    findings: tuple[Finding, ...]
-    verdicts: tuple[Verdict, ...]
-    text: str = field(default="", repr=False)
-
-    @cached_property
-    def counts(self) -> dict[Severity, int]:
-        """How many findings of each severity there are."""
-        return {severity: sum(found.severity is severity for found in self.findings) for severity in Severity}
-
-    def passes(self, strict: bool = False) -> bool:
-        """Whether there is no error; with `strict`, no warning either."""
-        return not self.counts[Severity.ERROR] and not (strict and self.counts[Severity.WARNING])
-
-    def verdict(self, consumer: str) -> Verdict:
-        """The verdict of one consumer.
-
-        Raises:
-            UnknownNameError: there are no rules of that consumer.
-        """
-        from rttrr_pin.errors import UnknownNameError
-
-        for verdict in self.verdicts:
-            if verdict.consumer == consumer:
-                return verdict
-        raise UnknownNameError("consumer", consumer, [verdict.consumer for verdict in self.verdicts])
+    parser: str
+    behaviour: Behaviour
+    matches: tuple[RuleMatch, ...]

@@ -6,20 +6,17 @@ downloaded, and a mesh that cannot be read leaves the geometry unknown.
 
 from __future__ import annotations
 
-import logging
-import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
-from functools import lru_cache
 from itertools import product
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.solids import Box, Cylinder, RigidBody, Sphere, rotation
-from rttrr_pin.inspection.reading import Body, Geometry
+from rttrr_pin.core.solids import Box, Cylinder, RigidBody, Sphere
+from rttrr_pin.inspection.hull import filled_hull
+from rttrr_pin.urdf.document import UrdfLink, UrdfShape
 
 MESH_TYPES = (".stl", ".dae", ".obj", ".ply")
 
@@ -74,53 +71,50 @@ class Looks:
         return len(self.points) > 0 and not self.missing
 
 
-def looks_of(body: Body, folder: Path | None) -> Looks:
+def looks_of(link: UrdfLink, folder: Path | None) -> Looks:
     """The geometry of a link.
 
     Args:
-        body: the link.
+        link: the link.
         folder: where the URDF lies; None for a text, whose meshes cannot be found.
     """
     clouds: dict[str, list[Array]] = {"visual": [], "collision": []}
-    missing, singles = [], list[Filled]()
-    for shape in body.geometry:
-        if shape.kind == "mesh":
-            points = _mesh_points(shape, folder)
+    missing, solids = [], dict[str, Filled]()
+    for shape in link.shapes:
+        solid = _primitive(shape)
+        points = _mesh_points(shape, folder) if solid is None else _outline(solid)
+        if len(points) and solid is not None and sum(other.role == shape.role for other in link.shapes) == 1:
+            body = RigidBody.of(solid, 1.0).placed(shape.origin.xyz.floats, shape.origin.rpy.floats)
+            solids[shape.role] = Filled(f"the {shape.role} {shape.tag}", body, True)
+        if not len(points) or not SMALLEST < float(np.abs(points).max() + np.abs(shape.origin.p).max()) < LARGEST:
+            missing.append(shape.attributes.get("filename", f"<{shape.tag}>"))
         else:
-            solid = _primitive(shape)
-            points = np.zeros((0, 3)) if solid is None else _outline(solid)
-            if len(points) and solid is not None and sum(other.role == shape.role for other in body.geometry) == 1:
-                placed = RigidBody.of(solid, 1.0).placed(shape.xyz, shape.rpy)
-                singles.append(Filled(f"the {shape.role} {shape.kind}", placed, True))
-        if not len(points) or not SMALLEST < float(np.abs(points).max()) + np.abs(shape.xyz).max() < LARGEST:
-            missing.append(shape.attributes.get("filename", f"<{shape.kind}>"))
-        elif shape.role in clouds:
-            clouds[shape.role].append(points @ rotation(shape.rpy).T + np.array(shape.xyz))
-    hulls = [_hull(role, cloud) for role, cloud in clouds.items() if cloud]
+            clouds[shape.role].append(points @ shape.origin.R.T + shape.origin.p)
+    hulls = {role: _hull(role, cloud) for role, cloud in clouds.items() if cloud}
     everything = [points for cloud in clouds.values() for points in cloud]
     whole = _hull("link", everything) if everything else None
-    done = {solid.label.split()[1] for solid in singles}
+    approximate = [hull for role, hull in hulls.items() if hull is not None and role not in solids]
     return Looks(
         points=np.concatenate(everything) if everything else np.zeros((0, 3)),
         volume=0.0 if whole is None else whole.body.mass,
-        solids=(*singles, *(hull for hull in hulls if hull is not None and hull.label.split()[-1][:-1] not in done)),
+        solids=(*solids.values(), *approximate),
         missing=tuple(dict.fromkeys(missing)),
     )
 
 
-def _primitive(shape: Geometry) -> Box | Cylinder | Sphere | None:
+def _primitive(shape: UrdfShape) -> Box | Cylinder | Sphere | None:
     """The solid; None where its numbers are none, or its tag is unknown."""
-    if shape.kind not in ("box", "cylinder", "sphere"):
+    if shape.tag not in ("box", "cylinder", "sphere"):
         return None
-    names = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",)}[shape.kind]
+    names = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",)}[shape.tag]
     try:
         sizes = [float(word) for name in names for word in shape.attributes[name].split()]
         if not all(SMALLEST < size < LARGEST for size in sizes):
             return None
-        if shape.kind == "box":
+        if shape.tag == "box":
             x, y, z = sizes
             return Box((x, y, z))
-        return Sphere(*sizes) if shape.kind == "sphere" else Cylinder(*sizes)
+        return Sphere(*sizes) if shape.tag == "sphere" else Cylinder(*sizes)
     except (KeyError, ValueError, TypeError):  # an attribute is missing or no number; too few or too many numbers
         return None
 
@@ -141,29 +135,22 @@ def _outline(solid: Box | Cylinder | Sphere) -> Array:
 
 def _hull(role: str, clouds: Iterable[Array]) -> Filled | None:
     """The filled hull of points; None where they lie in a plane."""
-    import trimesh
-
-    points = np.concatenate(list(clouds))
-    try:
-        hull = trimesh.convex.convex_hull(points)
-        volume, com, inertia = float(hull.volume), np.array(hull.center_mass), np.array(hull.moment_inertia)
-    except Exception:  # Qhull's own error for flat or too few points; scipy names it differently by version
-        return None
-    if not (volume > 0.0 and np.isfinite(com).all() and np.isfinite(inertia).all()):
-        return None
-    return Filled(f"the hull of the {role}s", RigidBody(volume, com, inertia), False)
+    body = filled_hull(np.unique(np.concatenate(list(clouds)), axis=0))
+    return None if body is None else Filled(f"the hull of the {role}s", body, False)
 
 
-def _mesh_points(shape: Geometry, folder: Path | None) -> Array:
+def _mesh_points(shape: UrdfShape, folder: Path | None) -> Array:
     """The corners of a mesh's hull, scaled; none where it cannot be read."""
-    path = None if folder is None else find_mesh(shape.attributes.get("filename", ""), folder)
+    path = None if folder is None or shape.tag != "mesh" else find_mesh(shape.attributes.get("filename", ""), folder)
     if path is None:
         return np.zeros((0, 3))
+    from rttrr_pin.inspection import meshes  # loads trimesh
+
     try:
         scale = [float(word) for word in shape.attributes.get("scale", "1 1 1").split()]
-        return _load(path) * (np.array(scale) if len(scale) == 3 else 1.0)
     except ValueError:
         return np.zeros((0, 3))
+    return meshes.load_corners(path) * (np.array(scale) if len(scale) == 3 else 1.0)
 
 
 def find_mesh(filename: str, folder: Path) -> Path | None:
@@ -184,26 +171,3 @@ def find_mesh(filename: str, folder: Path) -> Path | None:
         except (OSError, ValueError):  # a name too long, or with a null byte
             continue
     return None
-
-
-@lru_cache(maxsize=512)
-def _load(path: Path) -> Array:
-    """The corners of a mesh's hull, in metres; none where it cannot be read."""
-    import trimesh
-
-    quiet = logging.getLogger("trimesh")
-    level = quiet.level
-    quiet.setLevel(logging.CRITICAL)
-    try:
-        with warnings.catch_warnings(), np.errstate(all="ignore"):
-            warnings.simplefilter("ignore")
-            mesh: Any = trimesh.load(path, force="mesh", process=False, skip_materials=True)
-            if mesh.units not in (None, "m", "meter", "meters"):
-                mesh.convert_units("meters")
-            points = np.asarray(mesh.vertices, dtype=np.float64)
-            points = points[np.isfinite(points).all(axis=1)]
-            return np.asarray(trimesh.convex.convex_hull(points).vertices) if len(points) > 100 else points
-    except Exception:  # whatever a damaged mesh does to its reader, inspection goes on without it
-        return np.zeros((0, 3))
-    finally:
-        quiet.setLevel(level)

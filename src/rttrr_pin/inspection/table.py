@@ -5,18 +5,17 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from rttrr_pin.errors import UnknownNameError
-from rttrr_pin.inspection import joints, physics, plausibility
-from rttrr_pin.inspection import mirrored_links as twins
+from rttrr_pin.inspection import joints, mirrored_links, physics, plausibility
 from rttrr_pin.inspection.check import Check, Observation, Subject
 from rttrr_pin.inspection.results import Severity
 
 
 def root_inertia(subject: Subject) -> Iterator[Observation]:
     """The root has an <inertial>, and is no link of its own that stands for the world."""
-    body = subject.links[subject.document.root]
-    if body.inertial is not None and body.inertial.mass.exact != 0:
+    root = subject.document.links[subject.document.root]
+    if root.inertial is not None and root.inertial.mass.exact != 0:
         yield Observation(
-            body, float(body.inertial.mass), "kg",
+            root, float(root.inertial.mass), "kg",
             "the root link has a mass: a fixed base does not feel it, and KDL leaves it out",
             "for KDL, add a root link without mass and fix this one to it",
         )  # fmt: skip
@@ -25,7 +24,7 @@ def root_inertia(subject: Subject) -> Iterator[Observation]:
 CHECKS = (
     *physics.CHECKS,
     *plausibility.CHECKS,
-    *twins.CHECKS,
+    *mirrored_links.CHECKS,
     *joints.CHECKS,
     Check("C501", Severity.NOTE, "The root link has no mass.", root_inertia),
 )

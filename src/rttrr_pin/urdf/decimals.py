@@ -1,45 +1,69 @@
-"""Numbers as a file writes them: the exact rational behind a decimal text, and how far rounding can have moved it."""
+"""NumberList as a file writes them: the text, the exact rational behind it, and how far rounding can have moved it."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
+from functools import cached_property
 
 FINEST = -400
 """Power of ten below which a zero is just zero: 0e-999999999 is a valid text, and 10**999999999 fits nowhere."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Number:
-    """A decimal number of a file.
+    """A decimal number of a file, converted when it is asked for.
 
     Attributes:
-        text: the characters in the file.
-        exact: the number they denote, with no rounding.
-        half: half a unit of the last digit written; a longer number that was rounded to this text lies no farther
-            away. 0 for a zero without a point, which is taken as meant.
+        text: the characters in the file, blanks around them included.
     """
 
     text: str
-    exact: Fraction
-    half: Fraction
-
-    @classmethod
-    def of(cls, text: str) -> Number:
-        """Read a decimal number.
-
-        Args:
-            text: digits that the strict reader has let pass.
-        """
-        written = Decimal(text.strip())
-        exponent = int(written.as_tuple().exponent)
-        if not written and not FINEST <= exponent < 0:
-            return cls(text, Fraction(0), Fraction(0))
-        return cls(text, Fraction(written), Fraction(10) ** exponent / 2)
 
     def __float__(self) -> float:
-        return float(self.exact)
+        return float(self.text)
+
+    @cached_property
+    def exact(self) -> Fraction:
+        """The number that the digits denote, with no rounding."""
+        decimal, exponent = self._parts
+        return Fraction(decimal) if decimal or FINEST <= exponent < 0 else Fraction(0)
+
+    @cached_property
+    def half(self) -> Fraction:
+        """Half a unit of the last digit written; a longer number that was rounded to this text lies no farther away.
+
+        0 for a zero without a point, which is taken as meant.
+        """
+        decimal, exponent = self._parts
+        return Fraction(10) ** exponent / 2 if decimal or FINEST <= exponent < 0 else Fraction(0)
+
+    @property
+    def _parts(self) -> tuple[Decimal, int]:
+        decimal = Decimal(self.text.strip())
+        return decimal, int(decimal.as_tuple().exponent)
+
+
+@dataclass(frozen=True)
+class NumberList:
+    """Several numbers in one attribute, such as `xyz`.
+
+    Attributes:
+        text: the attribute as it stands.
+    """
+
+    text: str
+
+    @cached_property
+    def each(self) -> tuple[Number, ...]:
+        """The numbers one by one."""
+        return tuple(map(Number, self.text.split()))
+
+    @cached_property
+    def floats(self) -> tuple[float, ...]:
+        """The double nearest to each."""
+        return tuple(map(float, self.each))
 
 
 def text_of(value: Fraction) -> str:

@@ -1,85 +1,322 @@
-"""XML text to elements with line numbers: what is no plain, complete XML document in UTF-8 is refused here."""
+"""A URDF as the file writes it: words, lines and tree, read and checked once; all else is computed from this.
+
+The model (`reader.py`), the exact parameters (`exact/parameters.py`) and an inspection are views of a document. Nothing
+is converted before it is asked for: a number is a text that becomes a double or a rational.
+"""
 
 from __future__ import annotations
 
-import io
-import re
-from typing import Any
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any, TypeVar
 
-from lxml import etree
+import numpy as np
 
-from rttrr_pin.errors import UrdfError
-from rttrr_pin.urdf.sources import Source
+from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.joints import JOINT_TYPES
+from rttrr_pin.core.solids import rotation
+from rttrr_pin.urdf.checks import check_document
+from rttrr_pin.urdf.decimals import Number, NumberList
+from rttrr_pin.urdf.sources import AnySource, Source, find
+from rttrr_pin.urdf.vocabulary import ATTRIBUTES
+from rttrr_pin.urdf.xml_text import parse_xml
 
-UTF_8 = ("UTF-8", "UTF8", "ASCII", "US-ASCII")
+T = TypeVar("T")
+
+ZEROS = NumberList("0 0 0")
 
 
-def parse_xml(source: Source) -> Any:
-    """The root element of an XML text, with the line of each element; comments and processing instructions are gone.
+@dataclass(frozen=True, eq=False)
+class Placement:
+    """An <origin>, the identity where there is none.
 
-    The line is where the start tag ends; beyond line 65,534 libxml2 may be off by the length of the text behind it.
+    Attributes:
+        xyz: the origin of the frame in the frame around it [m].
+        rpy: its angles, see `rotation` [rad].
+    """
+
+    xyz: NumberList = ZEROS
+    rpy: NumberList = ZEROS
+
+    @cached_property
+    def p(self) -> Array:
+        """The origin, (3,) [m]."""
+        return np.array(self.xyz.floats)
+
+    @cached_property
+    def R(self) -> Array:
+        """Maps vectors of the frame to the frame around it, (3, 3)."""
+        return rotation(self.rpy.floats) + 0.0  # -0.0, of -sin(0), becomes 0.0
+
+    @cached_property
+    def rotated(self) -> bool:
+        """Whether R is computed from angles that are not zero."""
+        return not np.array_equal(self.R, np.eye(3))
+
+
+@dataclass(frozen=True, eq=False)
+class UrdfInertial:
+    """An <inertial>.
+
+    Attributes:
+        origin: of the inertial frame in the link frame; `origin.p` is the centre of mass.
+        mass: [kg].
+        entries: the six entries of the tensor about the centre of mass, by name, in the inertial frame [kg m^2].
+    """
+
+    origin: Placement
+    mass: Number
+    entries: dict[str, Number]
+
+    def tensor_of(self, value: Callable[[Number], T]) -> tuple[tuple[T, T, T], ...]:
+        """The symmetric tensor in the inertial frame, each entry converted."""
+        xx, xy, xz, yy, yz, zz = (value(self.entries[name]) for name in ATTRIBUTES["inertia"])
+        return (xx, xy, xz), (xy, yy, yz), (xz, yz, zz)
+
+    @cached_property
+    def tensor(self) -> Array:
+        """The tensor in the axes of the inertial frame, (3, 3) [kg m^2], each entry the nearest double."""
+        return np.array(self.tensor_of(float))
+
+    @cached_property
+    def inertia(self) -> Array:
+        """The tensor in the axes of the link frame, (3, 3) [kg m^2]; not finite where turning it overflows."""
+        if not self.origin.rotated:
+            return self.tensor
+        R = self.origin.R
+        with np.errstate(over="ignore", invalid="ignore"):
+            turned = R @ self.tensor @ R.T
+            return np.asarray((turned + turned.T) / 2)
+
+
+@dataclass(frozen=True, eq=False)
+class UrdfShape:
+    """A <visual> or <collision>.
+
+    Attributes:
+        role: `"visual"` or `"collision"`.
+        tag: `"box"`, `"cylinder"`, `"sphere"`, `"mesh"`, or another.
+        attributes: of that element, as written.
+        origin: its frame in the link frame.
+    """
+
+    role: str
+    tag: str
+    attributes: dict[str, str]
+    origin: Placement
+
+
+@dataclass(frozen=True, eq=False)
+class UrdfLink:
+    """A <link>.
+
+    Attributes:
+        name: its name.
+        line: its line.
+        inertial: mass and tensor; None where it has none.
+        shapes: what is drawn and what collides.
+    """
+
+    name: str
+    line: int
+    inertial: UrdfInertial | None
+    shapes: tuple[UrdfShape, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class UrdfMimic:
+    """A <mimic>: coordinate = multiplier times that of `joint`, plus offset."""
+
+    joint: str
+    multiplier: Number
+    offset: Number
+
+
+@dataclass(frozen=True, eq=False)
+class UrdfJoint:
+    """A <joint>.
+
+    Attributes:
+        name: its name.
+        line: its line.
+        type: URDF's word.
+        parent: the link that carries it.
+        child: the link that it carries.
+        origin: its frame in the parent link's.
+        axis: the vector that it turns about or slides along, of any length; 1 0 0 where none is written.
+        limit: the attributes of its <limit> that are there; None where there is no <limit>.
+        mimic: the joint that it follows, and how.
+        damping: viscous friction; 0 where none is written.
+        friction: Coulomb friction; 0 where none is written.
+    """
+
+    name: str
+    line: int
+    type: str
+    parent: str
+    child: str
+    origin: Placement
+    axis: NumberList
+    limit: dict[str, Number] | None
+    mimic: UrdfMimic | None
+    damping: Number
+    friction: Number
+
+    @property
+    def moves(self) -> bool:
+        """Whether it has a degree of freedom."""
+        return JOINT_TYPES[self.type].nv > 0
+
+    @cached_property
+    def limits(self) -> dict[str, float]:
+        """The numbers of its <limit> that are there; none where there is no <limit>."""
+        return {key: float(number) for key, number in (self.limit or {}).items()}
+
+
+@dataclass(frozen=True, eq=False)
+class UrdfDocument:
+    """A robot as the file writes it.
+
+    Attributes:
+        source: what to call the file in messages.
+        text: the file's text.
+        folder: where the file lies, to find meshes from; None for a text.
+        name: the robot's name.
+        links: by name, in the order of the file.
+        joints: by name, in the order of the file.
+    """
+
+    source: str
+    text: str
+    folder: Path | None
+    name: str
+    links: dict[str, UrdfLink]
+    joints: dict[str, UrdfJoint]
+
+    @cached_property
+    def carried_by(self) -> dict[str, UrdfJoint]:
+        """The joint of each link but the root."""
+        return {joint.child: joint for joint in self.joints.values()}
+
+    @cached_property
+    def children(self) -> dict[str, tuple[UrdfJoint, ...]]:
+        """The joints on each link, alphabetically."""
+        on_link: dict[str, list[UrdfJoint]] = {name: [] for name in self.links}
+        for name in sorted(self.joints):
+            on_link[self.joints[name].parent].append(self.joints[name])
+        return {name: tuple(joints) for name, joints in on_link.items()}
+
+    @cached_property
+    def root(self) -> str:
+        """The link that no joint carries."""
+        return next(name for name in self.links if name not in self.carried_by)
+
+    def walk(self) -> Iterator[tuple[int, str]]:
+        """Depth and name of each link in Pinocchio's order: depth first, joints alphabetically at each branch."""
+        waiting = [(0, self.root)]
+        while waiting:
+            depth, name = waiting.pop()
+            yield depth, name
+            waiting += [(depth + 1, joint.child) for joint in reversed(self.children[name])]
+
+    @cached_property
+    def placements(self) -> dict[str, tuple[Array, Array]]:
+        """Rotation and origin of each link in the root's frame, all coordinates zero."""
+        placed = {self.root: (np.eye(3), np.zeros(3))}
+        for _, name in self.walk():
+            if name != self.root:
+                joint = self.carried_by[name]
+                R, p = placed[joint.parent]
+                placed[name] = R @ joint.origin.R, p + R @ joint.origin.p
+        return placed
+
+
+def read_document(source: AnySource) -> UrdfDocument:
+    """Read and check a robot's file.
+
+    Args:
+        source: a name, a path, a text, ...: see `sources.py`.
 
     Raises:
-        UrdfError: empty, binary or truncated text, another encoding than UTF-8, or a document type (entity bombs and
-            external entities need one).
+        UnknownNameError: there is no such robot or file.
+        InputError: the source is of another type, or an extra is missing.
+        UrdfError: the file is no URDF, is damaged, or says something that has no dynamics.
     """
-    if not source.text.strip():
-        raise UrdfError("is empty, expected a URDF", source=source.name)
-    _check_encoding(source)
-    parser = etree.XMLParser(
-        encoding="utf-8",
-        resolve_entities=False,
-        no_network=True,
-        load_dtd=False,
-        huge_tree=False,
-        remove_comments=True,
-        remove_pis=True,
-    )
-    try:
-        root = etree.parse(io.BytesIO(source.text), parser).getroot()
-    except etree.XMLSyntaxError as error:
-        if b"<!DOCTYPE" in _without_comments(source.text):
-            raise _doctype(source) from None
-        line = error.lineno or None
-        raise UrdfError(
-            f"is no well-formed XML: {error.msg or 'it cannot be parsed'}", source=source.name, line=line
-        ) from None
-    info = root.getroottree().docinfo
-    if info.doctype or info.internalDTD is not None:
-        raise _doctype(source)
-    return root
+    file = find(source)
+    root = parse_xml(file)
+    check_document(root, file.name)
+    return _document(root, file)
 
 
-def _check_encoding(source: Source) -> None:
-    """Pinocchio reads every file as UTF-8, whatever it declares: only files that are UTF-8 mean the same to all."""
-    try:
-        text = source.text.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = source.text.count(b"\n", 0, error.start) + 1
-        raise UrdfError(
-            f"is no well-formed XML: byte {source.text[error.start]:#04x} is not UTF-8; save it as UTF-8 text",
-            source=source.name,
-            line=line,
-        ) from None
-    declared = re.match(r"<\?xml[^>]*?encoding\s*=\s*[\"']([^\"']*)[\"']", text.lstrip())
-    if declared and declared[1].upper() not in UTF_8 and source.name != "<string>" and not text.isascii():
-        raise UrdfError(f"declares the encoding {declared[1]}: save it as UTF-8", source=source.name, line=1)
-
-
-def _doctype(source: Source) -> UrdfError:
-    text = _without_comments(source.text)
-    line = text.count(b"\n", 0, max(text.find(b"<!DOCTYPE"), 0)) + 1
-    return UrdfError(
-        "has a document type, which a URDF has no use for: remove <!DOCTYPE ...> and write its entities out",
-        source=source.name,
-        line=line,
+def _document(root: Any, file: Source) -> UrdfDocument:
+    return UrdfDocument(
+        source=file.name,
+        text=file.text.decode("utf-8-sig"),
+        folder=file.folder,
+        name=root.get("name"),
+        links={xml.get("name"): _link(xml) for xml in root.findall("link")},
+        joints={xml.get("name"): _joint(xml) for xml in root.findall("joint")},
     )
 
 
-def _without_comments(text: bytes) -> bytes:
-    """The text with only the line ends of its comments left; in linear time, which a regular expression is not."""
-    kept, at = [], 0
-    while (start := text.find(b"<!--", at)) >= 0 and (end := text.find(b"-->", start + 4)) >= 0:
-        kept += [text[at:start], b"\n" * text.count(b"\n", start, end)]
-        at = end + 3
-    return b"".join([*kept, text[at:]])
+def _link(xml: Any) -> UrdfLink:
+    inertial = xml.find("inertial")
+    shapes = [_shape(shape) for role in ("visual", "collision") for shape in xml.findall(role)]
+    return UrdfLink(
+        name=xml.get("name"),
+        line=xml.sourceline,
+        inertial=None if inertial is None else _inertial(inertial),
+        shapes=tuple(shape for shape in shapes if shape is not None),
+    )
+
+
+def _inertial(xml: Any) -> UrdfInertial:
+    mass, tensor = xml.find("mass"), xml.find("inertia")
+    entries = {name: Number(tensor.get(name)) for name in ATTRIBUTES["inertia"]}
+    return UrdfInertial(_placement(xml), Number(mass.get("value")), entries)
+
+
+def _shape(xml: Any) -> UrdfShape | None:
+    """A shape; None where its element is empty or its placement is no placement, which dynamics do not depend on."""
+    shape = next((tag for tag in xml.findall("geometry/*") if isinstance(tag.tag, str)), None)
+    origin = _placement(xml)
+    try:
+        placed = len(origin.xyz.floats) == len(origin.rpy.floats) == 3
+    except ValueError:
+        placed = False
+    return None if shape is None or not placed else UrdfShape(xml.tag, shape.tag, dict(shape.attrib), origin)
+
+
+def _joint(xml: Any) -> UrdfJoint:
+    axis, limit, mimic, dynamics = (xml.find(tag) for tag in ("axis", "limit", "mimic", "dynamics"))
+    return UrdfJoint(
+        name=xml.get("name"),
+        line=xml.sourceline,
+        type=xml.get("type"),
+        parent=xml.find("parent").get("link"),
+        child=xml.find("child").get("link"),
+        origin=_placement(xml),
+        axis=NumberList(_word(axis, "xyz", "1 0 0")),
+        limit=None
+        if limit is None
+        else {key: Number(limit.get(key)) for key in ATTRIBUTES["limit"] if key in limit.attrib},
+        mimic=None if mimic is None else _mimic(mimic),
+        damping=Number(_word(dynamics, "damping", "0")),
+        friction=Number(_word(dynamics, "friction", "0")),
+    )
+
+
+def _mimic(xml: Any) -> UrdfMimic:
+    return UrdfMimic(_word(xml, "joint", ""), Number(_word(xml, "multiplier", "1")), Number(_word(xml, "offset", "0")))
+
+
+def _placement(xml: Any) -> Placement:
+    origin = xml.find("origin")
+    return Placement(NumberList(_word(origin, "xyz", "0 0 0")), NumberList(_word(origin, "rpy", "0 0 0")))
+
+
+def _word(xml: Any, attribute: str, default: str) -> str:
+    """An attribute of an element, either of which may be missing."""
+    return default if xml is None else str(xml.get(attribute, default))

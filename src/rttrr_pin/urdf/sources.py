@@ -43,10 +43,11 @@ SUFFIXES = (".urdf", ".xacro")
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """The text of a URDF and what to call it in messages."""
+    """The text of a URDF, what to call it in messages, and the folder where its file lies, if there is one."""
 
     name: str
     text: bytes
+    folder: Path | None = None
 
 
 @cache
@@ -130,10 +131,9 @@ def _find_text(source: str) -> Source:
     if "<" in source and "\n" in source.strip():
         raise UrdfError("starts with other text, expected <robot ...> or a path", source="<string>", line=1)
     if source in bundled():
-        return Source(bundled()[source].name, _read(bundled()[source]))
+        return _file(bundled()[source].name, bundled()[source])
     if source.startswith(EXAMPLE):
-        name = source.removeprefix(EXAMPLE)
-        return Source(source, _read(_example(name)))
+        return _file(source, _example(source.removeprefix(EXAMPLE)))
     return _find_path(Path(source))
 
 
@@ -149,12 +149,16 @@ def _find_path(path: Path) -> Source:
     if not there:
         fix = f"check the path, or write {EXAMPLE}NAME for an example robot"
         raise UnknownNameError("bundled robot or file", shortened(str(path)), bundled(), fix)
-    text = _read(path)
+    file = _file(str(path), path)
     if path.suffix == ".xacro":
         from rttrr_pin.urdf.xacro import expanded
 
-        return Source(f"{path} (as xacro expands it)", expanded(path))
-    return Source(str(path), text)
+        return Source(f"{path} (as xacro expands it)", expanded(path), file.folder)
+    return file
+
+
+def _file(name: str, path: Path) -> Source:
+    return Source(name, _read(path), path.absolute().parent)
 
 
 def _only_robot(folder: Path) -> Path:
