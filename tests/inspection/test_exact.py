@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rttrr_pin
-from rttrr_pin.inspection import Inspection
+from rttrr_pin.inspection import Inspection, inspect
 from rttrr_pin.inspection.exact import (
     Matrix,
     Shape,
@@ -38,7 +38,7 @@ points = st.tuples(coordinates, coordinates, coordinates)
 
 
 def look(text: str, select: str = "P") -> Inspection:
-    return rttrr_pin.load(text).inspect(select=[select])
+    return inspect(rttrr_pin.load(text), select=[select])
 
 
 def ids(text: str, select: str = "P") -> list[str]:
@@ -159,7 +159,7 @@ def test_rounding_never_makes_a_plate_impossible(
     size = max(float(abs(inertia[i][i])) for i in range(3))
     places = digits - 1 - int(np.floor(np.log10(size)))
     exact = {name: inertia[i][j] for name, (i, j) in zip(ENTRIES, at, strict=True)}
-    entries = {name: Number.of(f"{round(value * 10**places)}e{-places}") for name, value in exact.items()}
+    entries = {name: Number(f"{round(value * 10**places)}e{-places}") for name, value in exact.items()}
     written = symmetric({name: number.exact for name, number in entries.items()})
     if rank_if_positive(second_moments(written)) is None:
         mended = within_rounding(entries)
@@ -178,7 +178,7 @@ def test_few_digits_are_no_excuse() -> None:
 
 @pytest.mark.parametrize("text", ["1", "-2.50", "1e-18", ".5", "12e3", "0.000", "1234567.125"])
 def test_decimal_texts_are_exact(text: str) -> None:
-    number = Number.of(text)
+    number = Number(text)
     assert float(number) == float(text)
     assert Fraction(text_of(number.exact)) == number.exact
 
@@ -196,11 +196,11 @@ def test_decimal_texts_are_exact(text: str) -> None:
     ],
 )
 def test_half_a_unit_of_the_last_digit(text: str, half: str) -> None:
-    assert Number.of(text).half == Fraction(half)
+    assert Number(text).half == Fraction(half)
 
 
 def test_a_zero_with_a_huge_exponent_is_a_zero() -> None:
-    assert Number.of("0e-999999999") == Number("0e-999999999", Fraction(0), Fraction(0))
+    assert (Number("0e-999999999").exact, Number("0e-999999999").half) == (0, 0)
     assert ids(arm(inertial(1, ("1", "0e999999999", "0e-999999999", "1", "0", "1")))) == []
 
 
@@ -210,7 +210,7 @@ def test_ellipsoid_and_principal_axes_are_those_of_a_homogeneous_ellipsoid(rpy: 
     a, b, c, mass = 0.3, 0.2, 0.1, 2.0
     moments = [mass / 5 * (x * x + y * y) for x, y in ((b, c), (a, c), (a, b))]
     robot = rttrr_pin.load(arm(inertial(mass, diagonal(*moments), rpy=rpy)))
-    row = robot.inspect().links[1]
+    row = inspect(robot).links[1]
     assert np.allclose(row.semi_axes, (a, b, c), rtol=MODEL)
     assert np.allclose(row.gyration**2 * mass, moments, rtol=MODEL)
     assert np.isclose(np.linalg.det(row.axes), 1.0)
@@ -225,6 +225,6 @@ def test_mass_and_centre_of_mass_are_those_of_the_whole_robot(name: str) -> None
     model = pinocchio.buildModelFromXML(robot.model.urdf)
     data = model.createData()
     com = pinocchio.centerOfMass(model, data, pinocchio.neutral(model))
-    result = robot.inspect()
+    result = inspect(robot)
     assert np.linalg.norm(result.com - com) <= MODEL * np.linalg.norm(com)
     assert np.isclose(result.mass, data.mass[0])

@@ -22,9 +22,9 @@ from numpy.typing import ArrayLike
 
 import rttrr_pin
 from rttrr_pin.errors import RttrrError
-from rttrr_pin.inspection import CONSUMERS, RULES, Does, inspect
-from rttrr_pin.inspection.merged_links import lumps
-from rttrr_pin.inspection.reading import Document, read_document
+from rttrr_pin.inspection import PARSERS, RULES, Behaviour, Inspection, inspect
+from rttrr_pin.inspection.merged_links import merged_links
+from rttrr_pin.urdf.document import UrdfDocument, read_document
 from support.inspected import arm, diagonal, inertial, joint, shape, tip
 from support.tolerances import CONSUMER, CONSUMER_AXES, SOFT
 
@@ -32,6 +32,10 @@ GOOD = inertial(1, diagonal(1, 1, 1))
 ZERO = (0,) * 6
 FULL = ("0.5", "0.01", "-0.02", "0.4", "0.03", "0.3")
 FREEDOM = {"revolute": 1, "continuous": 1, "prismatic": 1, "planar": 3, "floating": 6, "fixed": 0}
+
+
+def look(text: str) -> Inspection:
+    return inspect(rttrr_pin.load(text))
 
 
 def leaf(name: str, parent: str, kind: str = "revolute", more: str = "") -> str:
@@ -170,25 +174,25 @@ def near(x: ArrayLike, y: ArrayLike) -> bool:
     return bool(np.linalg.norm(x - y) <= CONSUMER * np.linalg.norm(y))
 
 
-def freedom(document: Document) -> int:
-    return sum(FREEDOM[joint.type] for joint in document.joints if joint.mimics is None)
+def freedom(document: UrdfDocument) -> int:
+    return sum(FREEDOM[joint.type] for joint in document.joints.values() if joint.mimic is None)
 
 
 def moments(tensor: ArrayLike) -> np.ndarray:
     return np.linalg.eigvalsh(np.asarray(tensor))
 
 
-def pinocchio_does(text: str, document: Document) -> Does:
+def pinocchio_behaviour(text: str, document: UrdfDocument) -> Behaviour:
     try:
         model = pinocchio.buildModelFromXML(text)
     except ValueError:
-        return Does.REFUSE
+        return Behaviour.REFUSE
     same = model.nv == freedom(document)
-    for name, regroup in lumps(document).items():
+    for name, merged in merged_links(document).items():
         if name != document.root:
             loaded = model.inertias[model.getJointId(document.carried_by[name].name)]
-            same &= near(loaded.mass, regroup.mass) and near(moments(loaded.inertia), moments(regroup.inertia))
-    return Does.ACCEPT if same else Does.ALTER
+            same &= near(loaded.mass, merged.mass) and near(moments(loaded.inertia), moments(merged.inertia))
+    return Behaviour.ACCEPT if same else Behaviour.ALTER
 
 
 def tensor_of(body: Any) -> np.ndarray:
@@ -198,27 +202,27 @@ def tensor_of(body: Any) -> np.ndarray:
     return R.reshape(3, 3) * body.inertia @ R.reshape(3, 3).T
 
 
-def mujoco_does(text: str, document: Document) -> Does:
+def mujoco_behaviour(text: str, document: UrdfDocument) -> Behaviour:
     try:
         model = mujoco.MjModel.from_xml_string(text)
     except ValueError:
-        return Does.REFUSE
+        return Behaviour.REFUSE
     same = model.nv == freedom(document)
-    for name, regroup in lumps(document).items():
+    for name, merged in merged_links(document).items():
         if name != document.root:
             body = model.body(name)
-            off, size = np.linalg.norm(tensor_of(body) - regroup.inertia), abs(np.trace(regroup.inertia))
-            same &= near(body.mass[0], regroup.mass) and bool(off <= CONSUMER_AXES * size)
-            same &= not regroup.mass or bool(np.linalg.norm(body.ipos - regroup.first / regroup.mass) <= CONSUMER)
-    for link in document.joints:
+            off, size = np.linalg.norm(tensor_of(body) - merged.inertia), abs(np.trace(merged.inertia))
+            same &= near(body.mass[0], merged.mass) and bool(off <= CONSUMER_AXES * size)
+            same &= not merged.mass or bool(np.linalg.norm(body.ipos - merged.moment / merged.mass) <= CONSUMER)
+    for link in document.joints.values():
         if link.type in ("revolute", "prismatic") and link.limit is not None:
-            wanted = (link.limit.get("lower", 0.0), link.limit.get("upper", 0.0))
+            wanted = (link.limits.get("lower", 0.0), link.limits.get("upper", 0.0))
             same &= bool(model.joint(link.name).limited[0]) and near(model.joint(link.name).range, wanted)
         same &= link.type != "continuous" or not model.joint(link.name).limited[0]
-    return Does.ACCEPT if same else Does.ALTER
+    return Behaviour.ACCEPT if same else Behaviour.ALTER
 
 
-def drake_does(text: str, document: Document) -> Does:
+def drake_behaviour(text: str, document: UrdfDocument) -> Behaviour:
     import logging
 
     from pydrake.multibody.parsing import Parser
@@ -232,9 +236,9 @@ def drake_does(text: str, document: Document) -> Does:
             plant.WeldFrames(plant.world_frame(), plant.GetFrameByName(document.root, instance))
         plant.Finalize()
     except RuntimeError:
-        return Does.REFUSE
+        return Behaviour.REFUSE
     same = plant.num_velocities(instance) - plant.num_constraints() == freedom(document)
-    same &= all(plant.HasJointNamed(joint.name, instance) for joint in document.joints)
+    same &= all(plant.HasJointNamed(name, instance) for name in document.joints)
     for name, body in document.links.items():
         if name == "world":
             continue
@@ -244,58 +248,60 @@ def drake_does(text: str, document: Document) -> Does:
         if inertial is not None and mass > 0.0:
             spatial = loaded.default_spatial_inertia()
             tensor = spatial.Shift(spatial.get_com()).CalcRotationalInertia().CopyToFullMatrix3()
-            lever = mass * float(np.dot(inertial.com, inertial.com))  # added and taken away again: its digits are lost
+            lever = mass * float(
+                np.dot(inertial.origin.p, inertial.origin.p)
+            )  # added and taken away again: its digits are lost
             same &= bool(np.linalg.norm(tensor - inertial.inertia) <= CONSUMER * (np.linalg.norm(tensor) + lever))
-    return Does.ACCEPT if same else Does.ALTER
+    return Behaviour.ACCEPT if same else Behaviour.ALTER
 
 
 PROGRAMS: list = [
-    pytest.param("Pinocchio", pinocchio_does, id="Pinocchio"),
-    pytest.param("MuJoCo", mujoco_does, id="MuJoCo"),
-    pytest.param("Drake", drake_does, id="Drake", marks=pytest.mark.drake),
+    pytest.param("Pinocchio", pinocchio_behaviour, id="Pinocchio"),
+    pytest.param("MuJoCo", mujoco_behaviour, id="MuJoCo"),
+    pytest.param("Drake", drake_behaviour, id="Drake", marks=pytest.mark.drake),
 ]
 
-Program = Callable[[str, Document], Does]
+Program = Callable[[str, UrdfDocument], Behaviour]
 
 
 @pytest.mark.parametrize("name", FILES)
-@pytest.mark.parametrize(("consumer", "program"), PROGRAMS)
-def test_a_program_does_what_our_rules_say(consumer: str, program: Program, name: str) -> None:
-    assert inspect(FILES[name]).verdict(consumer).does is program(FILES[name], read_document(FILES[name], name))
+@pytest.mark.parametrize(("parser", "program"), PROGRAMS)
+def test_a_program_does_what_our_rules_say(parser: str, program: Program, name: str) -> None:
+    assert look(FILES[name]).verdict(parser).behaviour is program(FILES[name], read_document(FILES[name]))
 
 
 @pytest.mark.parametrize("power", range(-18, 7))
-@pytest.mark.parametrize(("consumer", "program"), PROGRAMS)
-def test_the_rules_hold_at_every_scale(consumer: str, program: Program, power: int) -> None:
+@pytest.mark.parametrize(("parser", "program"), PROGRAMS)
+def test_the_rules_hold_at_every_scale(parser: str, program: Program, power: int) -> None:
     """Consumers' tolerances have a scale, ours in physics have none."""
     for last in ("1.5", "2", "2.5"):
         text = arm(inertial(1, diagonal(f"1e{power}", f"1e{power}", f"{last}e{power}")))
-        assert inspect(text).verdict(consumer).does is program(text, read_document(text, "arm")), last
+        assert look(text).verdict(parser).behaviour is program(text, read_document(text)), last
 
 
 @pytest.mark.parametrize("name", UNDECIDED)
 def test_where_rounding_decides_we_say_so(name: str) -> None:
-    assert inspect(UNDECIDED[name]).verdict("MuJoCo").does is Does.EITHER
-    assert mujoco_does(UNDECIDED[name], read_document(UNDECIDED[name], name)) in Does
+    assert look(UNDECIDED[name]).verdict("MuJoCo").behaviour is Behaviour.EITHER
+    assert mujoco_behaviour(UNDECIDED[name], read_document(UNDECIDED[name])) in Behaviour
 
 
 @pytest.mark.parametrize("name", SINCE)
 def test_where_the_version_decides_we_say_which(name: str) -> None:
     since, text = SINCE[name]
-    verdict = inspect(text).verdict("MuJoCo")
-    (reason,) = {hit.reason for hit in verdict.hits}
-    assert verdict.does is Does.EITHER
+    verdict = look(text).verdict("MuJoCo")
+    (reason,) = {match.reason for match in verdict.matches}
+    assert verdict.behaviour is Behaviour.EITHER
     assert reason.startswith(f"before version {'.'.join(map(str, since)).removesuffix('.0')},")
-    assert mujoco_does(text, read_document(text, name)) is (Does.ACCEPT if since <= VERSION else Does.ALTER)
+    assert mujoco_behaviour(text, read_document(text)) is (Behaviour.ACCEPT if since <= VERSION else Behaviour.ALTER)
 
 
 @pytest.mark.parametrize("name", MERGED)
 def test_the_versions_that_merge_links_wrongly_are_told(name: str) -> None:
     until, text = MERGED[name]
-    verdict = inspect(text).verdict("MuJoCo")
-    assert verdict.does is Does.EITHER and {hit.rule for hit in verdict.hits} == {"mujoco-fused"}
+    verdict = look(text).verdict("MuJoCo")
+    assert verdict.behaviour is Behaviour.EITHER and {match.rule for match in verdict.matches} == {"mujoco-fused"}
     wrong = (3, 3, 3) <= VERSION < until
-    assert mujoco_does(text, read_document(text, name)) is (Does.ALTER if wrong else Does.ACCEPT)
+    assert mujoco_behaviour(text, read_document(text)) is (Behaviour.ALTER if wrong else Behaviour.ACCEPT)
 
 
 angles = st.sampled_from(["0", "1", "-2.5", f"{math.pi}", f"{math.pi / 2}", f"{-math.pi}"])
@@ -308,12 +314,12 @@ def test_the_rpy_of_a_tensor_is_told_where_it_matters(sizes: list[float], produc
     """MuJoCo has the tensor in the inertial frame's axes, or as if these were the link's; told where that differs."""
     x, y, z = sizes
     text = arm(inertial(2, (y + z, product, 0, x + z, 0, x + y), rpy=" ".join(rpy)))
-    mass = read_document(text, "arm").links["arm"].inertial
+    mass = read_document(text).links["arm"].inertial
     assert mass is not None
     theirs = tensor_of(mujoco.MjModel.from_xml_string(text).body("arm"))
-    assert np.allclose(theirs, mass.inertia if VERSION >= (3, 14) else mass.written, rtol=0, atol=CONSUMER)
-    told = "mujoco-rpy" in {hit.rule for hit in inspect(text).verdict("MuJoCo").hits}
-    assert told is not np.allclose(mass.inertia, mass.written, rtol=0, atol=CONSUMER)
+    assert np.allclose(theirs, mass.inertia if VERSION >= (3, 14) else mass.tensor, rtol=0, atol=CONSUMER)
+    told = "mujoco-rpy" in {match.rule for match in look(text).verdict("MuJoCo").matches}
+    assert told is not np.allclose(mass.inertia, mass.tensor, rtol=0, atol=CONSUMER)
 
 
 @pytest.mark.parametrize("kind", ["revolute", "prismatic", "continuous"])
@@ -337,14 +343,14 @@ def test_mujoco_s_followers_move_by_themselves(kind: str, multiplier: float, off
 def test_either_is_said_only_where_it_makes_a_difference() -> None:
     """Of two rules the worse one counts, and an open one by its worst."""
     turned, impossible = inertial(2, FULL, rpy="1 2 3"), inertial(1, diagonal(1, 1, 3), rpy="1 2 3")
-    assert inspect(arm(turned)).verdict("MuJoCo").does is Does.EITHER
-    assert inspect(arm(turned, limit="")).verdict("MuJoCo").does is Does.EITHER
-    assert inspect(FILES["mimic, and a turned tensor"]).verdict("MuJoCo").does is Does.ALTER
-    assert inspect(arm(impossible)).verdict("MuJoCo").does is Does.REFUSE
+    assert look(arm(turned)).verdict("MuJoCo").behaviour is Behaviour.EITHER
+    assert look(arm(turned, limit="")).verdict("MuJoCo").behaviour is Behaviour.EITHER
+    assert look(FILES["mimic, and a turned tensor"]).verdict("MuJoCo").behaviour is Behaviour.ALTER
+    assert look(arm(impossible)).verdict("MuJoCo").behaviour is Behaviour.REFUSE
     plate = arm(
         inertial(1, ("0.25", "0.05", "0", "0.25", "0", "0.5")), limit='<limit upper="1" effort="1" velocity="1"/>'
     )
-    assert inspect(plate).verdict("MuJoCo").does is Does.EITHER  # altered, or refused
+    assert look(plate).verdict("MuJoCo").behaviour is Behaviour.EITHER  # altered, or refused
 
 
 def without_shapes(text: str) -> str:
@@ -365,17 +371,17 @@ def bundled_and_examples() -> dict[str, str | Path]:
         return {name: name for name in bundled()}
 
 
-@pytest.mark.parametrize(("consumer", "program"), PROGRAMS)
-def test_the_rules_hold_for_real_robots(consumer: str, program: Program) -> None:
+@pytest.mark.parametrize(("parser", "program"), PROGRAMS)
+def test_the_rules_hold_for_real_robots(parser: str, program: Program) -> None:
     wrong, seen = {}, 0
     for name, source in bundled_and_examples().items():
         try:
             text = without_shapes(rttrr_pin.load(source).model.urdf)
         except RttrrError:  # no URDF that the strict reader takes
             continue
-        ours, theirs = inspect(text).verdict(consumer).does, program(text, read_document(text, name))
+        ours, theirs = look(text).verdict(parser).behaviour, program(text, read_document(text))
         seen += 1
-        if ours is not theirs and ours is not Does.EITHER:
+        if ours is not theirs and ours is not Behaviour.EITHER:
             wrong[name] = (str(ours), str(theirs))
     assert seen >= 5
     assert wrong == {}
@@ -406,8 +412,8 @@ def test_the_rules_hold_for_real_robots(consumer: str, program: Program) -> None
     ],
 )
 def test_gazebo_and_kdl_by_their_sources(text: str, gazebo: str, kdl: str) -> None:
-    result = inspect(text)
-    assert (result.verdict("Gazebo").does, result.verdict("KDL").does) == (gazebo, kdl)
+    result = look(text)
+    assert (result.verdict("Gazebo").behaviour, result.verdict("KDL").behaviour) == (gazebo, kdl)
 
 
 def test_every_rule_is_met_by_a_file_and_has_a_source() -> None:
@@ -419,6 +425,6 @@ def test_every_rule_is_met_by_a_file_and_has_a_source() -> None:
         arm(inertial(1, ("0.25", "0.05", "0", "0.25", "0", "0.5")), base=GOOD),
     ]
     more.append(arm(inertial(1, diagonal("1e-18", "1e-18", f"{2e-18 + 16 * 2.220446049250313e-16!r}"))))
-    met = {hit.rule for text in more for verdict in inspect(text).verdicts for hit in verdict.hits}
+    met = {match.rule for text in more for verdict in look(text).verdicts for match in verdict.matches}
     assert met == {rule.id for rule in RULES}
-    assert all(":" in rule.source and set(rule.consumers) <= set(CONSUMERS) for rule in RULES)
+    assert all(":" in rule.source and set(rule.parsers) <= set(PARSERS) for rule in RULES)

@@ -56,10 +56,10 @@ def tip(inside: str, kind: str = "fixed", origin: str = '<origin xyz="0.1 0 0" r
     return f'<link name="tip">{inside}</link>' + joint("hold", "arm", "tip", kind, origin=origin, more=more)
 
 
-def twins(left: Mapping[str, object], right: Mapping[str, object]) -> str:
+def mirrored(left: Mapping[str, object], right: Mapping[str, object]) -> str:
     """Two links whose names differ in their side, each with the arguments of `inertial`."""
     links = "".join(
         f'<link name="{side}_hand">{inertial(**numbers)}</link>' + joint(f"{side}_wrist", "base", f"{side}_hand")  # type: ignore[arg-type]
         for side, numbers in (("left", left), ("right", right))
     )
-    return f'<robot name="twins"><link name="base"/>{links}</robot>'
+    return f'<robot name="mirrored"><link name="base"/>{links}</robot>'

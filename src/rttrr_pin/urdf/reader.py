@@ -69,14 +69,14 @@ def _located(document: UrdfDocument, tag: str, element: UrdfLink | UrdfJoint) ->
 
 def _mimic(joint: UrdfJoint, document: UrdfDocument, index: dict[str, int]) -> Mimic | None:
     """Whom a joint follows in the end: chains of mimics are multiplied out."""
-    if joint.mimic is None or not joint.moves:
-        return None
     multiplier, offset, followed = Fraction(1), Fraction(0), 0  # exact, so that a chain is rounded once
-    while joint.mimic is not None:
-        offset += multiplier * Fraction(float(joint.mimic.offset))
-        multiplier *= Fraction(float(joint.mimic.multiplier))
+    while joint.moves and (mimic := joint.mimic) is not None:
+        offset += multiplier * Fraction(float(mimic.offset))
+        multiplier *= Fraction(float(mimic.multiplier))
         followed += 1
-        joint = document.joints[joint.mimic.joint]
+        joint = document.joints[mimic.joint]
+    if not followed:
+        return None
     try:
         return Mimic(index[joint.name], float(multiplier), float(offset), rounded=followed > 1)
     except OverflowError:
