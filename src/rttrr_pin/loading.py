@@ -11,7 +11,6 @@ from rttrr_pin.core.inputs import vectors
 from rttrr_pin.core.model import STANDARD_GRAVITY
 from rttrr_pin.errors import InputError, ShapeError
 from rttrr_pin.robot import Robot
-from rttrr_pin.urdf.reader import read_urdf
 from rttrr_pin.urdf.sources import AnySource, robots_in
 
 
@@ -41,6 +40,8 @@ def load(
         ShapeError, NumberError: gravity is no vector of three finite numbers.
         InputError: the source is of another type, an extra is missing, or base is neither "fixed" nor "floating".
     """
+    from rttrr_pin.urdf.reader import read_urdf  # loads lxml, which a robot made from numbers does not need
+
     field = vectors("gravity", gravity)
     if field.ndim != 1:
         raise ShapeError(

@@ -338,7 +338,7 @@ def test_drives_of_the_file_are_its_decimals_and_others_are_doubles() -> None:
 
 
 def test_a_robot_without_a_file_has_no_decimals(rttrr: Robot) -> None:
-    bare = Robot(replace(rttrr.model, urdf=""))
+    bare = Robot(replace(rttrr.model, document=None))
     with pytest.raises(InputError, match="was made from numbers and has no file.*pass parameters='doubles'"):
         bare.enclose(np.zeros(5), np.zeros(5), np.zeros(5), parameters="text")
 

@@ -196,8 +196,8 @@ def _link(xml: Any, link: Any) -> Iterator[str]:
 
 def _joint(xml: Any, joint: Any, model: Any, joints: Any) -> Iterator[str]:
     kind, origin, axis = xml.get("type"), only(xml, "origin"), only(xml, "axis")
-    if joint.type != kind:
-        yield f"type {joint.type}, the text has {kind}"
+    if joint.type.name != kind:
+        yield f"type {joint.type.name}, the text has {kind}"
     yield from _same("origin", joint.p, numbers(origin, "xyz", 3, "0 0 0"))
     rpy = numbers(origin, "rpy", 3, "0 0 0")
     R = flat(rotation(rpy))

@@ -87,7 +87,6 @@ FILES = {
     "no upper": arm(GOOD, limit='<limit lower="-1" effort="1" velocity="1"/>'),
     "zero range": arm(GOOD, limit='<limit lower="0" upper="0" effort="1" velocity="1"/>'),
     "empty range": arm(GOOD, limit='<limit lower="0.5" upper="0.5" effort="1" velocity="1"/>'),
-    "range from above to below": arm(GOOD, limit='<limit lower="1" upper="-1" effort="1" velocity="1"/>'),
     "empty range, continuous": arm(GOOD, limit='<limit lower="0" upper="0" effort="1" velocity="1"/>', kind="continuous"),
     "half a range, continuous": arm(GOOD, limit='<limit upper="1" effort="1" velocity="1"/>', kind="continuous"),
     "mass on the base": arm(GOOD, base=inertial()),

@@ -459,7 +459,7 @@ def test_pinocchio_and_yourdfpy_read_what_the_modules_say(code: str) -> None:
     for k, (module, origin, body) in enumerate(zip(arm.modules, arm.origins, arm.bodies, strict=False), start=1):
         joint = robot.joint_map[f"joint_{k}"]
         assert model.joints[k].shortname() == f"JointModel{module.key[-2].replace('T', 'P')}{module.key[-1].upper()}"
-        assert (joint.type.name, tuple(joint.axis)) == (module.type, module.axis)
+        assert (joint.type, tuple(joint.axis)) == (module.type, module.axis)
         for placement in (model.jointPlacements[k].homogeneous, joint.origin):
             assert norm_error(placement[:3, 3], origin) <= MODEL
             assert np.array_equal(placement[:3, :3], np.eye(3))

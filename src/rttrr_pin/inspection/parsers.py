@@ -95,7 +95,7 @@ RULES = (
          "<mimic> is ignored before version 3.13, and then a soft constraint: the joint can move by itself",
          "mujoco: src/xml/xml_urdf.cc, mjXURDF::Joint", joints.mimicking),
     Rule("mujoco-range", (MUJOCO,), Behaviour.ALTER,
-         "a range of length zero, from above to below, or with an end left out, is no limit: the joint moves freely",
+         "a range of length zero, or with an end left out, is no limit: the joint moves freely",
          "mujoco: src/xml/xml_urdf.cc, mjXURDF::Joint", joints.degenerate_range),
     Rule("mujoco-continuous", (MUJOCO,), Behaviour.EITHER,
          "before version 4, the range of a continuous joint limits it",
