@@ -210,7 +210,7 @@ def test_who_decides(rttrr: Robot) -> None:
     """The file; where the model is not what the file says, the model."""
     assert true_numbers(rttrr.model) == "read"
     assert true_numbers(altered(rttrr.model, 3, "mass")) == "doubles"
-    assert true_numbers(replace(rttrr.model, urdf="")) == "doubles"
+    assert true_numbers(replace(rttrr.model, document=None)) == "doubles"
 
 
 # In a run
