@@ -15,6 +15,8 @@ from typing import Any, Protocol, TypeAlias, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rttrr_pin.core.arrays import Array
+
 
 class Scalar(Protocol):
     """Anything with +, - and *; the algebra never asks what it is.
@@ -129,6 +131,11 @@ class Matrix:
         columns = other.T.rows
         a, b, c = (Vector(*(row.dot(column) for column in columns)) for row in self.rows)
         return Matrix((a, b, c))
+
+    @property
+    def array(self) -> Array:
+        """A matrix of plain numbers as an array, (3, 3)."""
+        return np.array([[*row] for row in self.rows], dtype=np.float64)
 
 
 ZERO = Vector(0, 0, 0)

@@ -49,7 +49,10 @@ class SpatialInertia:
         return SpatialInertia(self.m, h + p * self.m, J + shift)
 
     def about_com(self) -> tuple[Vector, Matrix]:
-        """The centre of mass h / m [m], and the tensor about it [kg m^2]; without mass, the origin and J."""
+        """The centre of mass h / m [m], and the tensor about it [kg m^2]; without mass, the origin and J.
+
+        The tensor is a difference of tensors about the origin: the farther the centre of mass, the more it is rounded.
+        """
         m: Any = self.m  # of a kind that can be divided, as scalars need not be
         if m == 0.0:
             return NOWHERE, self.J

@@ -14,7 +14,9 @@ from typing import Protocol
 
 import numpy as np
 
+from rttrr_pin.core.algebra import Vector
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.errors import InputError
 
 Triple = tuple[float, float, float]
@@ -207,7 +209,7 @@ def rotation(rpy: Sequence[float]) -> Array:
 def combine(bodies: Iterable[RigidBody]) -> RigidBody:
     """The one rigid body that several bodies in one frame make together.
 
-    M = sum m_k; M c = sum m_k c_k; with d = c_k - c, I = sum I_k + m_k (d.d E - d d^T), the parallel-axis theorem.
+    M = sum m_k; M c = sum m_k c_k; with d = c_k - c, I = sum I_k + m_k (d.d 1 - d d^T) (parallel axes).
     Where bodies overlap, both masses count.
 
     Args:
@@ -223,8 +225,7 @@ def combine(bodies: Iterable[RigidBody]) -> RigidBody:
     com = sum((part.mass * part.com for part in parts), np.zeros(3)) / mass
     inertia = np.zeros((3, 3))
     for part in parts:
-        d = part.com - com
-        inertia += part.inertia + part.mass * (np.dot(d, d) * np.eye(3) - np.outer(d, d))
+        inertia += part.inertia + part.mass * point_tensor(Vector.of(part.com - com)).array
     return RigidBody(mass, com, inertia)
 
 

@@ -9,7 +9,9 @@ from typing import Any
 import numpy as np
 import pinocchio as pin
 
+from rttrr_pin.core.algebra import Vector
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints import FLOATING
 from rttrr_pin.core.model import Model
@@ -213,6 +215,5 @@ def _inertia(model: Model, parts: list[tuple[int, Array, Array]]) -> tuple[float
     com = masses @ centres / mass if mass else centres[0]
     tensor = np.zeros((3, 3))
     for (k, R, _), m, c in zip(parts, masses, centres, strict=True):
-        d = c - com
-        tensor += R @ model.links[k].inertia @ R.T + m * (d @ d * np.eye(3) - np.outer(d, d))
+        tensor += R @ model.links[k].inertia @ R.T + m * point_tensor(Vector.of(c - com)).array
     return mass, com, tensor
