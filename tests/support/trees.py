@@ -62,3 +62,8 @@ def _mimic(rng: np.random.Generator, kinds: np.ndarray, labels: np.ndarray, i: i
         return ""
     multiplier, offset = rng.uniform(-2, 2, 2)
     return f'<mimic joint="joint_{labels[rng.choice(masters)]}" multiplier="{multiplier:.17g}" offset="{offset:.17g}"/>'
+
+
+MUTATED = (39, 8)
+"""Seed and joints of a tree in which every term of the recursion and of every joint type matters: all types, a joint
+that follows another, a prismatic joint on a link that turns."""

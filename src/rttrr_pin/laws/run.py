@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from rttrr_pin.core.algebra import Scalar
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import blocks
 from rttrr_pin.core.inputs import whole_number
 from rttrr_pin.core.payload import Load
@@ -151,11 +151,17 @@ def _loads(robot: Robot, drawn: States) -> Sequence[Load]:
 def _try(rows: Iterable[LawRow], case: Case, first: int, count: int) -> None:
     """Every law on consecutive states."""
     for row in rows:
-        residual: list[Scalar] = list(row.law.residual(case))
-        values, bounds = values_and_bounds(residual, count)
-        shares = np.where(values == 0.0, 0.0, np.abs(values) / bounds)
-        shares = np.where(np.isnan(shares) | ~np.isfinite(bounds), np.inf, shares).max(axis=1, initial=0.0)
-        row.numbers = len(residual)
-        if residual:
-            row.share.see(shares, first)
-            row.violations += int((shares > 1.0).sum())
+        ratios = error_over_bound(row.law, case, count)
+        row.numbers = ratios.shape[1]
+        if row.numbers:
+            row.share.see(ratios.max(axis=1), first)
+            row.violations += int((ratios.max(axis=1) > 1.0).sum())
+
+
+def error_over_bound(law: Law, case: Case, count: int) -> Array:
+    """What the law says is zero, over its error bound, (N, numbers); infinite where it is not finite."""
+    values, bounds = values_and_bounds(list(law.residual(case)), count)
+    with np.errstate(all="ignore"):
+        ratios = np.where(values == 0.0, 0.0, np.abs(values) / bounds)
+    ratios[np.isnan(ratios) | ~np.isfinite(bounds)] = np.inf
+    return ratios
