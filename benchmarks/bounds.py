@@ -21,12 +21,11 @@ from typing import Any
 import numpy as np
 
 import rttrr_pin
-from common import arguments, finish
+from common import arguments, finish, result
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.exact.intervals import precision
 from rttrr_pin.exact.straight_line import straight_line
 from rttrr_pin.validation import Sampler
-from saved import result
 
 ROBOTS = ("rttrr", "trr", "trtr", "trtrr", "trttr", "example:panda", "example:talos_reduced")
 ALONE = "tau alone"

@@ -1,4 +1,4 @@
-"""What every benchmark writes: its figures, with machine and versions, as JSON."""
+"""What every benchmark writes and reads: figures, with machine and versions, as JSON."""
 
 from __future__ import annotations
 
@@ -11,6 +11,9 @@ from pathlib import Path
 from typing import Any
 
 RESULTS = Path(__file__).parent / "results"
+
+WIDTH = 100
+"""Of a line of results, about; a record of numbers and words alone is one line, however long."""
 
 PACKAGES = ("rttrr-pin", "pin", "numpy", "yourdfpy", "llvmlite")
 
@@ -40,10 +43,42 @@ def arguments(description: str) -> argparse.ArgumentParser:
     return parser
 
 
+def result(name: str) -> dict[str, Any]:
+    """What a benchmark saved."""
+    data: dict[str, Any] = json.loads((RESULTS / f"{name}.json").read_text())
+    return data
+
+
+def machine_of(data: dict[str, Any]) -> str:
+    """The kind of machine that a result was measured on."""
+    kind = data["machine"]
+    return ", ".join([kind["processor"], *([kind["vectors"]] if "vectors" in kind else []), f"{kind['cores']} cores"])
+
+
+def written(value: Any, indent: int = 0) -> str:
+    """JSON with one line for each record, floats to nine significant digits."""
+    if isinstance(value, float):
+        return json.dumps(float(f"{value:.9g}"))
+    if not isinstance(value, dict | list):
+        return json.dumps(value)
+    if isinstance(value, dict):
+        pieces = [f"{json.dumps(str(key))}: {written(item, indent + 1)}" for key, item in value.items()]
+    else:
+        pieces = [written(item, indent + 1) for item in value]
+    left, right = "{}" if isinstance(value, dict) else "[]"
+    inside = list(value.values()) if isinstance(value, dict) else value
+    short = sum(map(len, pieces)) < WIDTH and not any("\n" in piece for piece in pieces)
+    record = indent and not any(isinstance(item, dict) or (isinstance(item, list) and len(item) > 4) for item in inside)
+    if short or record:
+        return left + ", ".join(pieces) + right
+    start = "\n" + " " * (indent + 1)
+    return left + start + f",{start}".join(pieces) + "\n" + " " * indent + right
+
+
 def finish(name: str, figures: dict[str, Any], save: bool) -> None:
     """Print the figures, and write them whole if asked to."""
     versions = {package: metadata.version(package) for package in PACKAGES}
-    text = json.dumps({"benchmark": name, "machine": machine(), "versions": versions, **figures}, indent=2) + "\n"
+    text = written({"benchmark": name, "machine": machine(), "versions": versions, **figures}) + "\n"
     print(text, end="")
     if save:
         RESULTS.mkdir(exist_ok=True)

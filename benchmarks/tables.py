@@ -1,0 +1,356 @@
+"""The tables of the documents, made from benchmarks/results: `python benchmarks/tables.py [--check]`.
+
+A page holds the table of a name between `<!-- table: NAME -->` and `<!-- end: NAME -->`. Without --check the pages are
+rewritten; with it, exit 1 if one is out of date.
+"""
+
+from __future__ import annotations
+
+import argparse
+import re
+import sys
+from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
+
+from common import machine_of, result
+
+TOP = Path(__file__).parents[1]
+
+PAGES = [TOP / "README.md", *sorted((TOP / "docs").glob("*.md"))]
+
+Lines = list[str]
+Rows = list[dict[str, Any]]
+
+ROBOTS = {"rttrr": "RTTRR", "ur5_robot": "UR5", "panda": "Panda with fingers", "talos_reduced": "Talos reduced"}
+
+EXAMPLES = {"example:panda": "Panda with fingers", "example:talos_reduced": "Talos reduced"}
+
+STATES = 100_000
+"""Of the tables of speed."""
+
+OURS = {"kernel_rows": "rttrr-pin, rows (N, n)", "kernel_columns": "rttrr-pin, columns (n, N)"}
+
+LIMITS = {"copy": "limit: copy of the same bytes"}
+
+
+def table(header: Iterable[Any], rows: Iterable[Iterable[Any]]) -> Lines:
+    """A table in Markdown."""
+    cells = [[str(cell) for cell in row] for row in (header, *rows)]
+    lines = [re.sub(r" +(?=\|)", " ", f"| {' | '.join(row)} |") for row in cells]
+    return [lines[0], "|" + "---|" * len(cells[0]), *lines[1:]]
+
+
+def measured(data: dict[str, Any], script: str) -> str:
+    """On what a result was measured, and by what."""
+    return f"{machine_of(data)}; `python benchmarks/{script}.py`"
+
+
+def agreement() -> Lines:
+    data = result("agreement")
+    worst, pin = data["worst"], data["versions"]["pin"]
+    return [
+        f"{data['states']:,} random states of RTTRR with a random payload, rttrr-pin and Pinocchio {pin}: "
+        f"**{data['verdict']}** ({measured(data, 'agreement')}).",
+        "",
+        *table(
+            ["", *worst],
+            [
+                ["worst difference, eps of the link's own norm", *(f"{x['worst_eps']:.0f}" for x in worst.values())],
+                ["worst error / tolerance", *(f"{x['worst_share_of_gate']:.2f}" for x in worst.values())],
+            ],
+        ),
+    ]
+
+
+def cost() -> Lines:
+    data = result("cost")
+    return [
+        f"Cost of the whole command, process start included ({measured(data, 'validate_cost')}):",
+        "",
+        *table(
+            ["`rttrr-pin validate --states`", "wall time, median", "peak memory, median"],
+            [(f"{x['states']:,}", f"{x['wall_s'][1]} s", f"{x['peak_mib'][1]:.0f} MiB") for x in data["rows"]],
+        ),
+    ]
+
+
+def robots() -> Lines:
+    data, trees = result("example_robots"), result("random_trees")
+    by_name: dict[str, Rows] = {}
+    for entry in data["entries"]:
+        by_name.setdefault(entry["name"], []).append(entry)
+    unusable = {name: sum(e["verdict"] == "unusable" for e in both) for name, both in by_name.items()}
+    stopped = sorted(name for name, count in unusable.items() if count == len(by_name[name]))
+    partly = sorted(name for name, count in unusable.items() if count and name not in stopped)
+    defects = {e["name"]: e["defect"].split(": ", 2)[-1] for e in data["entries"] if e.get("defect")}
+    agree = data["files"] - len(stopped) - data["verdicts"].get("disagree", 0)
+    return [
+        f"Other robots ({measured(data, 'example_robots')}, `benchmarks/random_trees.py`):",
+        "",
+        *table(
+            ["", "robots", "states, each base", "agree", "worst normwise error", "worst error / tolerance", "time"],
+            [
+                (
+                    f"all URDFs of example-robot-data {data['example-robot-data']}, fixed and floating base",
+                    data["files"],
+                    f"{data['states']:,}",
+                    agree,
+                    *_worst(data),
+                ),
+                (
+                    f"random trees of {trees['joints']} joints of all types, fixed and floating base",
+                    f"{trees['trees']:,}",
+                    trees["states_per_tree_and_base"],
+                    f"{trees['trees'] - len(trees['disagree']):,}",
+                    *_worst(trees),
+                ),
+            ],
+        ),
+        "",
+        "The trees also pass states at 300 m/s and 300 rad/s, where terms that cancel leave their rounding",
+        "in both programs; the verdict rests on error / tolerance.",
+        "",
+        f"{len(stopped)} of the {data['files']} are stopped by a defect of their file:",
+        "",
+        *(f"- `{name}`: {defects[name]}" for name in stopped),
+        *([""] if partly else []),
+        *(f"`{name}` agrees on a floating base; on a fixed one it has no joint to compare." for name in partly),
+    ]
+
+
+def _worst(data: dict[str, Any]) -> tuple[str, str, str]:
+    return f"{data['worst_eps']:,.0f} eps", f"{data['worst_share_of_gate']:.2f}", f"{data['seconds']:.0f} s"
+
+
+def audit() -> Lines:
+    paper, misprints = result("audit_paper"), result("audit_misprints")
+    derived = next(row["n"][1] for row in result("derive")["rows"] if row["robot"] == "rttrr")
+    kinds = ", ".join(f"{count} {kind}" for kind, count in sorted(paper["kinds"].items(), key=lambda pair: -pair[1]))
+    seen = misprints["copies_with_slips"] - len(misprints["copies_not_reported"])
+    return [
+        f"Audit of the paper ({measured(paper, 'audit_paper')}, `benchmarks/derive.py`, "
+        f"`tests/fuzz/misprint_campaign.py`): of {paper['components']} components with {paper['printed_terms']:,} "
+        f"printed terms, **{paper['match']} match, {paper['differs']} differ, {paper['unparsed']} are unparsed**; "
+        f"{paper['findings']} findings: {kinds}. {paper['dimensionally_wrong']} printed terms have the wrong "
+        "dimension, which needs no derivation. Every corrected equation is symbolically equal to the derivation and "
+        f"lies in the same interval. {paper['seconds_median']:.1f} s; all moments n_i, derived and written, in "
+        f"{derived:.1f} s.",
+        "",
+        f"Planted misprints: {misprints['slips']:,} errors in {misprints['copies_with_slips']:,} copies, one to three "
+        f"in each; {seen:,} copies found, {100 * misprints['named_with_kind_and_term']:.1f} % of the errors named with "
+        f"kind and term; {len(misprints['clean_components_reported'])} findings in "
+        f"{misprints['clean_copies_of_60_components']} clean copies of all 60.",
+    ]
+
+
+def bounds() -> Lines:
+    data = result("bounds")
+    rows = []
+    for name, robot in data["robots"].items():
+        tau, n = robot["quantities"]["tau"], robot["quantities"]["n"]
+        over = f"{tau['bound_over_error_median']:.0f}; {n['bound_over_error_median']:.0f}"
+        largest, time = f"{tau['largest_error_eps']:.1f}", f"{robot['time_with_bounds_over_plain']:.1f}"
+        rows.append((EXAMPLES.get(name, name.upper()), f"{robot['states']:,}", over, largest, time))
+    over = "bound over true error, median (tau; n)"
+    return [
+        f"The kernel's own rounding bound, proven in interval arithmetic ({measured(data, 'bounds')}): "
+        f"**{data['violations']} violations**.",
+        "",
+        *table(["", "states", over, "largest true error of tau, eps", "time with bounds, times plain"], rows),
+    ]
+
+
+def errors() -> Lines:
+    data = result("umpire")
+    rows = []
+    for name, robot in data["robots"].items():
+        eps = robot["errors_eps"]
+        for quantity, ours in eps["ours"].items():
+            nearer, farther = (100 * eps[f"{who}_nearer"][quantity] for who in ("ours", "pinocchio"))
+            both = (_spread(figures) for figures in (ours, eps["pinocchio"][quantity]))
+            rows.append((name, quantity, *both, f"{nearer:.0f} %; {farther:.0f} %"))
+    return [
+        "Distance from the true value in eps of the norm of the true vector, of the link that is farthest off, in "
+        f"{data['states']:,} uniform states ({measured(data, 'umpire')}): median / 99.9 % / worst.",
+        "",
+        *table(["", "", "rttrr-pin", "Pinocchio", "states in which rttrr-pin is nearer; farther"], rows),
+    ]
+
+
+def _spread(figures: dict[str, float]) -> str:
+    return f"{figures['median']:.2f} / {figures['p999']:,.1f} / {figures['worst']:,.0f}"
+
+
+def speed() -> Lines:
+    """How many times faster than Pinocchio, and what starting costs."""
+    data, one, start = result("kernel_speed"), result("kernel_one"), result("kernel_start")
+    cores, rows = data["machine"]["cores"], []
+    for (key, name), single, first in zip(ROBOTS.items(), one["robots"], start["first_calls"], strict=True):
+        by_rows, by_columns = (_row(data["rows"], key, what) for what in OURS)
+        all_threads = _row(data["rows"], key, "kernel_rows", cores)
+        times = [x["times_as_fast_as_pinocchio"] for x in (by_rows, all_threads, by_columns)]
+        rows.append(
+            (
+                name,
+                f"{by_rows['ns_per_state']:.0f}",
+                f"**{times[0]:.0f}**",
+                *(f"{x:.0f}" for x in times[1:]),
+                f"{single['ratio_tau']:.1f}",
+                f"{single['ratio_all']:.1f}",
+                f"{first['compile_s']:.1f} s; {first['cached_s']:.2f} s",
+            )
+        )
+    header = [
+        f"tau, {STATES:,} states", "ns a state, one thread", "times `rneaInParallel`, one thread", "all threads",
+        "in columns, one thread", "one state from Python, times `rnea`", "with all wrenches, times `rnea` + `data.f`",
+        "compile; from cache",
+    ]  # fmt: skip
+    return [
+        f"Speed of `robot.compile()` against Pinocchio {data['versions']['pin']} ({measured(data, 'kernel_speed')}, "
+        "`kernel_one.py`, `kernel_start.py`; results are compared before anything is timed, medians):",
+        "",
+        *table(header, rows),
+        "",
+        f"The fastest other program in the same run: {_best_peers(data['rows'])}. All peers: "
+        "[docs/kernel.md](docs/kernel.md).",
+    ]
+
+
+def _row(rows: Rows, robot: str, what: str, threads: int = 1) -> dict[str, Any]:
+    """One row at the states of the table."""
+    wanted = (robot, what, threads, STATES)
+    return next(row for row in rows if (row["robot"], row["what"], row["threads"], row["states"]) == wanted)
+
+
+def _best_peers(rows: Rows) -> str:
+    peers = [row for row in rows if (row["states"], row["threads"], row["verdict"]) == (STATES, 1, "agrees")]
+    best = {
+        name: min(
+            (row for row in peers if row["robot"] == key and row["what"] not in OURS),
+            key=lambda row: float(row["ns_per_state"]),
+        )
+        for key, name in ROBOTS.items()
+    }
+    return ", ".join(f"{row['what']} with {row['ns_per_state']:,.0f} ns on {name}" for name, row in best.items())
+
+
+def peers() -> Lines:
+    """Every peer on every robot, and the limits."""
+    data = result("kernel_speed")
+    here = [row for row in data["rows"] if row["states"] == STATES and row["threads"] == 1]
+    first = [*OURS, *LIMITS]
+    others = dict.fromkeys(row["what"] for row in here if row["what"] not in first)
+    rows = []
+    for what in [*first, *sorted(others, key=lambda what: _nanoseconds(here, "rttrr", what)[1])]:
+        version = next((row["version"] for row in here if row["what"] == what and "version" in row), "")
+        cells = (_nanoseconds(here, robot, what)[0] for robot in ROBOTS)
+        rows.append((OURS.get(what) or LIMITS.get(what) or what, version, *cells))
+    peak = data["one_core"]
+    at_peak = (f"{peak['ns_at_peak'][robot]:.0f}" for robot in ROBOTS)
+    rows.append((f"limit: operations at {peak['peak_fma_per_ns']} fused multiply-adds a ns", "", *at_peak))
+    return [
+        f"ns a state for tau of {STATES:,} states, one thread ({machine_of(data)}; `python benchmarks/peers_setup.py`, "
+        "then `python benchmarks/kernel_speed.py`):",
+        "",
+        *table(["", "version", *ROBOTS.values()], rows),
+    ]
+
+
+def _nanoseconds(rows: Rows, robot: str, what: str) -> tuple[str, float]:
+    """As shown, and as sorted."""
+    for row in rows:
+        if row["robot"] == robot and row["what"] == what:
+            if row["verdict"] in ("agrees", "limit"):
+                return f"{row['ns_per_state']:,.0f}", row["ns_per_state"]
+            return row["verdict"], float("inf")
+    return "", float("inf")
+
+
+def operations() -> Lines:
+    """The kernel's, step by step, and those of published programs."""
+    data = result("operation_counts")
+    rows = [
+        (name, *(f"{x['multiplications']} / {x['additions']}" for x in steps.values()), steps["compiled"]["sincos"])
+        for name, steps in data["ours"].items()
+    ]
+    published = {
+        name: "; ".join(f"{program} {n[0]} / {n[1]}" for program, n in programs.items())
+        for name, programs in data["published"].items()
+    }
+    return [
+        *table(["robot", "traced", "regrouped", "collected", "compiled", "angles"], rows),
+        "",
+        *table(["published or generated by others", ""], published.items()),
+    ]
+
+
+def joints() -> Lines:
+    """The cost of chains of many lengths, by straight lines and by calls."""
+    data = result("kernel_joints")
+    rows = []
+    for count, kinds in data["joints"].items():
+        chosen, calls = kinds["chosen"], kinds["calls"]
+        kind = "straight lines" if chosen["kind"] == "lines" else "calls"
+        nanoseconds = f"{chosen['ns_per_state_and_joint']:.0f} ({kind})", f"{calls['ns_per_state_and_joint']:.0f}"
+        seconds = f"{chosen['compile_s']:.1f} s", f"{calls['compile_s']:.1f} s"
+        rows.append((count, nanoseconds[0], seconds[0], nanoseconds[1], seconds[1]))
+    return [
+        f"Chains of revolute joints about any axes, ns a state and joint, and seconds to compile "
+        f"({measured(data, 'kernel_joints')}):",
+        "",
+        *table(["joints", "as it is chosen", "compiled in", "by calls", "compiled in"], rows),
+    ]
+
+
+def main_path() -> Lines:
+    commands = result("main_path")["commands"]
+    keys = ("files", "functions", "classes", "modules")
+    return table(["`rttrr-pin`", *keys], [(f"`{name}`", *(x[key] for key in keys)) for name, x in commands.items()])
+
+
+def installed_size() -> Lines:
+    groups = result("installed_size")["megabytes"]
+    rows = [
+        (extra, f"`{name}`", x["own_mb"], x["with_its_own_mb"], x["packages"])
+        for extra, packages in groups.items()
+        for name, x in packages.items()
+    ]
+    return table(["installed", "package", "MB", "MB with what it alone brings", "packages"], rows)
+
+
+TABLES: dict[str, Callable[[], Lines]] = {
+    "agreement": agreement, "audit": audit, "bounds": bounds, "cost": cost, "errors": errors,
+    "installed size": installed_size, "joints": joints, "main path": main_path, "operations": operations,
+    "peers": peers, "robots": robots, "speed": speed,
+}  # fmt: skip
+"""By the name in the marker."""
+
+MARKED = re.compile(r"(<!-- table: ([\w ]+) -->\n).*?(<!-- end: \2 -->)", re.DOTALL)
+
+
+def rebuilt(page: Path) -> str:
+    """A page with its tables made anew."""
+    text = MARKED.sub(lambda match: match[1] + "\n".join([*TABLES[match[2]](), match[3]]), page.read_text())
+    return text if page.parent == TOP else text.replace("](docs/", "](")
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
+    parser.add_argument("--check", action="store_true")
+    check = parser.parse_args().check
+    stale = {page: text for page in PAGES if (text := rebuilt(page)) != page.read_text()}
+    if check:
+        print(
+            f"run python benchmarks/tables.py: {[page.name for page in stale]}"
+            if stale
+            else "the tables are up to date"
+        )
+        return int(bool(stale))
+    for page, text in stale.items():
+        page.write_text(text)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
