@@ -6,6 +6,7 @@ limits. A rule of ours that its program does not have, or a rule of a program th
 
 from __future__ import annotations
 
+import io
 import math
 from collections.abc import Callable
 from pathlib import Path
@@ -15,6 +16,7 @@ import mujoco
 import numpy as np
 import pinocchio
 import pytest
+import yourdfpy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from lxml import etree
@@ -25,7 +27,7 @@ from rttrr_pin.errors import RttrrError
 from rttrr_pin.inspection import PARSERS, RULES, Behaviour, Inspection, inspect
 from rttrr_pin.inspection.merged_links import merged_links
 from rttrr_pin.urdf.document import UrdfDocument, read_document
-from support.inspected import arm, diagonal, inertial, joint, shape, tip
+from support.inspected import LIMIT, arm, diagonal, inertial, joint, shape, tip
 from support.tolerances import CONSUMER, CONSUMER_AXES, SOFT
 
 GOOD = inertial(1, diagonal(1, 1, 1))
@@ -89,6 +91,18 @@ FILES = {
     "empty range": arm(GOOD, limit='<limit lower="0.5" upper="0.5" effort="1" velocity="1"/>'),
     "empty range, continuous": arm(GOOD, limit='<limit lower="0" upper="0" effort="1" velocity="1"/>', kind="continuous"),
     "half a range, continuous": arm(GOOD, limit='<limit upper="1" effort="1" velocity="1"/>', kind="continuous"),
+    "negative mass off the axis": arm(inertial(-1, xyz="0.1 0 0")),
+    "mass below eps off the axis": arm(inertial("1e-16", xyz="0.1 0 0")),
+    "limit without effort on a fixed joint": arm(GOOD, extra=tip(GOOD, more='<limit velocity="1"/>').replace(LIMIT, "")),
+    "blank behind the mass": arm(inertial("1 ")),
+    "blank before the mass": arm(inertial(" 1")),
+    "blank behind a moment": arm(inertial(1, ("2", "0", "0", "2 ", "0", "2"))),
+    "tab in the centre of mass": arm(inertial(1, xyz="0.1&#9;0 0")),
+    "spaces in the centre of mass": arm(inertial(1, xyz=" 0.1  0 0 ")),
+    "tab in an axis": arm(GOOD).replace('xyz="0 0 1"', 'xyz="0 0&#9;1"'),
+    "blank behind a limit": arm(GOOD).replace('upper="1"', 'upper="1 "'),
+    "blank behind damping": arm(GOOD, more='<dynamics damping="0.5 "/>'),
+    "blank behind a multiplier": follower('multiplier="2 "'),
     "mass on the base": arm(GOOD, base=inertial()),
     "negative mass on the base": arm(GOOD, base=inertial(-1)),
     "triangle on the base": arm(GOOD, base=inertial(1, diagonal(1, 1, 3))),
@@ -191,6 +205,7 @@ def pinocchio_behaviour(text: str, document: UrdfDocument) -> Behaviour:
         if name != document.root:
             loaded = model.inertias[model.getJointId(document.carried_by[name].name)]
             same &= near(loaded.mass, merged.mass) and near(moments(loaded.inertia), moments(merged.inertia))
+            same &= not merged.mass or np.allclose(loaded.lever * merged.mass, merged.moment, rtol=CONSUMER, atol=0)
     return Behaviour.ACCEPT if same else Behaviour.ALTER
 
 
@@ -254,7 +269,26 @@ def drake_behaviour(text: str, document: UrdfDocument) -> Behaviour:
     return Behaviour.ACCEPT if same else Behaviour.ALTER
 
 
+def yourdfpy_behaviour(text: str, document: UrdfDocument) -> Behaviour:
+    robot = yourdfpy.URDF.load(io.BytesIO(text.encode()), load_meshes=False)
+    same = robot.num_dofs == freedom(document)
+    for name, link in document.links.items():
+        loaded, inertial = robot.link_map[name].inertial, link.inertial
+        same &= (loaded is None) == (inertial is None)
+        if loaded is not None and inertial is not None:
+            same &= loaded.mass == float(inertial.mass) and np.array_equal(loaded.inertia, inertial.tensor)
+    still = {each.name: robot.get_transform(each.child, each.parent) for each in document.joints.values()}
+    robot.update_cfg(np.full(robot.num_actuated_joints, 0.1))
+    for name, each in document.joints.items():
+        free = each.moves and each.mimic is None
+        same &= free <= (not np.array_equal(robot.get_transform(each.child, each.parent), still[name]))
+        limit = robot.joint_map[name].limit
+        same &= {key: getattr(limit, key) for key in each.limits} == each.limits
+    return Behaviour.ACCEPT if same else Behaviour.ALTER
+
+
 PROGRAMS: list = [
+    pytest.param("yourdfpy", yourdfpy_behaviour, id="yourdfpy"),
     pytest.param("Pinocchio", pinocchio_behaviour, id="Pinocchio"),
     pytest.param("MuJoCo", mujoco_behaviour, id="MuJoCo"),
     pytest.param("Drake", drake_behaviour, id="Drake", marks=pytest.mark.drake),

@@ -13,6 +13,7 @@ import numpy as np
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.inspection.bodies import principal
 from rttrr_pin.inspection.merged_links import merged_links
+from rttrr_pin.urdf.decimals import blank_behind, other_blanks
 from rttrr_pin.urdf.document import UrdfDocument, UrdfInertial
 
 EPS = float(np.finfo(np.float64).eps)
@@ -52,12 +53,21 @@ def _sorted_moments(tensor: Array, negligible: float) -> Array:
     return principal(tensor)[0]
 
 
+def unparsed(document: UrdfDocument) -> Iterator[str]:
+    """Links with a blank behind a number of the <inertial>, or other blanks than spaces between numbers."""
+    for name, inertial in _inertials(document):
+        numbers = (inertial.mass, *inertial.entries.values())
+        vectors = (inertial.origin.xyz, inertial.origin.rpy)
+        if any(map(blank_behind, numbers)) or any(map(other_blanks, vectors)):
+            yield name
+
+
 def pinocchio_sum(document: UrdfDocument) -> Iterator[str]:
-    """Moving links that are merged with others, and have no positive mass then."""
+    """Moving links whose mass, with what is fixed to them, is below eps, and matters."""
     for name, merged in merged_links(document).items():
         inertials = [document.links[member].inertial for member in merged.members]
         massive = sum(inertial is not None and inertial.mass.exact != 0 for inertial in inertials)
-        if name != document.root and massive > 1 and merged.mass <= EPS:
+        if name != document.root and merged.mass < EPS and (massive > 1 or merged.moment.any()):
             yield name
 
 

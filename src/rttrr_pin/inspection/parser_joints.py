@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from rttrr_pin.inspection.joints import LIMITED
 from rttrr_pin.inspection.merged_links import merged_links
+from rttrr_pin.urdf.decimals import blank_behind, other_blanks
 from rttrr_pin.urdf.document import UrdfDocument
 
 
@@ -18,6 +19,16 @@ def without_effort(document: UrdfDocument) -> Iterator[str]:
     """Joints whose <limit> lacks effort or velocity."""
     needed = {"effort", "velocity"}
     return (joint.name for joint in document.joints.values() if joint.limit is not None and needed - joint.limit.keys())
+
+
+def unparsed(document: UrdfDocument) -> Iterator[str]:
+    """Joints with a blank behind a number, or other blanks than spaces between numbers."""
+    for joint in document.joints.values():
+        numbers = [joint.damping, joint.friction, *(joint.limit or {}).values()]
+        numbers += [joint.mimic.multiplier, joint.mimic.offset] if joint.mimic else []
+        vectors = [joint.origin.xyz, joint.origin.rpy] + [joint.axis] * (joint.type not in ("fixed", "floating"))
+        if any(map(blank_behind, numbers)) or any(map(other_blanks, vectors)):
+            yield joint.name
 
 
 def mimicking(document: UrdfDocument) -> Iterator[str]:

@@ -42,7 +42,14 @@ class Rule:
     at_worst: Behaviour = Behaviour.REFUSE
 
 
-PINOCCHIO, MUJOCO, DRAKE, GAZEBO, KDL = PARSERS = ("Pinocchio", "MuJoCo", "Drake", "Gazebo", "KDL")
+PINOCCHIO, MUJOCO, DRAKE, GAZEBO, KDL, YOURDFPY = PARSERS = (
+    "Pinocchio",
+    "MuJoCo",
+    "Drake",
+    "Gazebo",
+    "KDL",
+    "yourdfpy",
+)
 
 URDFDOM = (PINOCCHIO, GAZEBO, KDL)
 """They parse with urdfdom."""
@@ -54,8 +61,14 @@ RULES = (
     Rule("urdfdom-effort", URDFDOM, Behaviour.REFUSE,
          "a <limit> has no effort or no velocity",
          "urdfdom: urdf_parser/src/joint.cpp, parseJointLimits", joints.without_effort),
+    Rule("urdfdom-inertial", URDFDOM, Behaviour.ALTER,
+         "a mass or moment with a blank behind it, or an inertial origin with a tab or line end, is dropped",
+         "urdfdom: urdf_parser/src/link.cpp, parseInertial", inertia.unparsed),
+    Rule("urdfdom-joint", URDFDOM, Behaviour.REFUSE,
+         "a joint's vector has a tab or line end, or a limit, damping, friction or mimic a blank behind it",
+         "urdfdom: urdf_parser/src/joint.cpp, parseJoint", joints.unparsed),
     Rule("pinocchio-sum", (PINOCCHIO,), Behaviour.ALTER,
-         "masses fixed to each other add up to none or less: their sum is divided by eps instead of itself",
+         "a mass, with what is fixed to it, is below eps: its first moment is divided by eps instead of the mass",
          "pinocchio: include/pinocchio/spatial/inertia.hpp, InertiaTpl::__plus__", inertia.pinocchio_sum),
     Rule("pinocchio-mimic", (PINOCCHIO,), Behaviour.ALTER,
          "<mimic> is ignored unless mimic=True is passed: the joint moves by itself",
@@ -143,6 +156,9 @@ RULES = (
     Rule("kdl-mimic", (KDL,), Behaviour.ALTER,
          "<mimic> is ignored: the joint moves by itself",
          "kdl_parser: src/kdl_parser.cpp, toKdl", joints.mimicking),
+    Rule("yourdfpy-joint", (YOURDFPY,), Behaviour.ALTER,
+         "planar and floating joints do not move, and a planar one counts as two degrees of freedom",
+         "yourdfpy: urdf.py, URDF._forward_kinematics_joint and URDF.num_dofs", joints.planar_or_floating),
 )  # fmt: skip
 
 
