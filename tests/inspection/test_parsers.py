@@ -205,7 +205,8 @@ def pinocchio_behaviour(text: str, document: UrdfDocument) -> Behaviour:
         if name != document.root:
             loaded = model.inertias[model.getJointId(document.carried_by[name].name)]
             same &= near(loaded.mass, merged.mass) and near(moments(loaded.inertia), moments(merged.inertia))
-            same &= not merged.mass or np.allclose(loaded.lever * merged.mass, merged.moment, rtol=CONSUMER, atol=0)
+            if merged.mass:
+                same &= np.allclose(loaded.lever, merged.moment / merged.mass, rtol=CONSUMER, atol=CONSUMER)
     return Behaviour.ACCEPT if same else Behaviour.ALTER
 
 
