@@ -1,7 +1,7 @@
 """Three-vectors and 3x3 matrices over scalars of any kind.
 
-A scalar is anything with +, - and *: a float, a NumPy array (then a batch lives inside the scalar), a
-(value, bound) pair, a ball, a symbol. The integer 0 serves as the zero of every kind.
+A scalar is anything with +, - and *: a float, a NumPy array (of one number for each state of a batch), a value with its
+error bound, an interval, a polynomial. The integer 0 serves as the zero of every kind.
 
 NumPy object arrays would not do: an array-valued scalar broadcasts wrongly in them.
 """
@@ -109,11 +109,11 @@ class Matrix:
         return Matrix((Vector(a.x, b.x, c.x), Vector(a.y, b.y, c.y), Vector(a.z, b.z, c.z)))
 
     def __add__(self, other: Matrix) -> Matrix:
-        a, b, c = (mine + theirs for mine, theirs in zip(self.rows, other.rows, strict=True))
+        a, b, c = (x + y for x, y in zip(self.rows, other.rows, strict=True))
         return Matrix((a, b, c))
 
     def __sub__(self, other: Matrix) -> Matrix:
-        a, b, c = (mine - theirs for mine, theirs in zip(self.rows, other.rows, strict=True))
+        a, b, c = (x - y for x, y in zip(self.rows, other.rows, strict=True))
         return Matrix((a, b, c))
 
     def __mul__(self, s: Scalar) -> Matrix:

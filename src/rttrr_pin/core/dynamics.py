@@ -1,6 +1,6 @@
-"""The dynamics of a robot: the recursion, and what joints take themselves, whom they follow.
+"""The dynamics of a robot: the reference recursion, mimic joints, and armature and friction of the joints.
 
-Written once over scalars of any kind, as the recursion is: mimic joints, armature, damping and friction.
+Like the recursion this is written once, over scalars of any kind.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ def _bodies(model: Model, number: NumberOf) -> list[Body]:
 
 @dataclass(frozen=True, slots=True)
 class Result:
-    """What the specification yields, in scalars of one kind.
+    """The result of inverse dynamics, in scalars of one kind.
 
     Attributes:
         tau: driving force of each degree of freedom: what crosses the joint along it, plus `tau_joint`.
@@ -58,7 +58,7 @@ class Result:
 
 
 def evaluate(model: Model, arithmetic: Arithmetic, q: Array, v: Array, a: Array, loads: Sequence[Load] = ()) -> Result:
-    """The specification on a batch.
+    """Inverse dynamics of a batch.
 
     Args:
         model: the robot.
@@ -69,7 +69,7 @@ def evaluate(model: Model, arithmetic: Arithmetic, q: Array, v: Array, a: Array,
         loads: payloads.
 
     Returns:
-        The five quantities in scalars of that kind; what no state changes may be a plain number.
+        The five quantities in scalars of that kind; one that no state changes may be a plain number.
     """
     q_, v_, a_ = ([arithmetic.column(column) for column in columns(x)] for x in (q, v, a))
     return dynamics(model, arithmetic, q_, v_, a_, payloads_of(loads, arithmetic))
@@ -85,7 +85,7 @@ def dynamics(
     links: Sequence[Body] | None = None,
     gravity: Vector | None = None,
 ) -> Result:
-    """The specification on scalars.
+    """Inverse dynamics on scalars.
 
     Args:
         model: the robot.
@@ -94,11 +94,11 @@ def dynamics(
         v: a scalar for each rate.
         a: a scalar for each acceleration.
         payloads: what the robot exerts on its surroundings.
-        links: bodies to take instead of the model's own.
-        gravity: field to take instead of the model's own.
+        links: bodies, if not the model's own.
+        gravity: the gravity field [m/s^2], if not the model's own.
 
     Returns:
-        The five quantities in scalars of that kind; what no state changes may be a plain number.
+        The five quantities in scalars of that kind; one that no state changes may be a plain number.
     """
     states = joint_states(model, arithmetic, q, v, a)
     if gravity is None:
@@ -107,18 +107,17 @@ def dynamics(
     sincos, keep, call = arithmetic.sincos, arithmetic.keep, arithmetic.call
     result = newton_euler(links or bodies(model, arithmetic), parents, states, gravity, payloads, sincos, keep, call)
     own = [
-        call(_joint_effects, joint.effects, state, arithmetic)
-        for joint, state in zip(model.joints, states, strict=True)
+        call(joint_effects, joint.effects, state, arithmetic) for joint, state in zip(model.joints, states, strict=True)
     ]
-    across, tau_joint = (_generalised(model, arithmetic, forces) for forces in (result.tau, own))
-    tau = [x + y for x, y in zip(across, tau_joint, strict=True)]
+    transmitted, tau_joint = (generalised_forces(model, arithmetic, forces) for forces in (result.tau, own))
+    tau = [x + y for x, y in zip(transmitted, tau_joint, strict=True)]
     return Result(tau, tau_joint, result.F, result.N, result.f, result.n)
 
 
 def joint_states(
     model: Model, arithmetic: Arithmetic, q: Sequence[Scalar], v: Sequence[Scalar], a: Sequence[Scalar]
 ) -> list[JointState]:
-    """The columns of q, v, a by joint; a joint that follows another has its columns made from that one's."""
+    """q, v, a of each joint; those of a mimic joint are computed from the joint that it follows."""
     q_, v_, a_ = iter(q), iter(v), iter(a)
     own: dict[int, JointState] = {}
     for i in model.independent:
@@ -126,22 +125,22 @@ def joint_states(
         own[i] = JointState(list(islice(q_, nq)), list(islice(v_, nv)), list(islice(a_, nv)))
     at_rest = JointState((), (), ())
     return [
-        own.get(i, at_rest) if joint.mimic is None else _following(joint.mimic, own[joint.mimic.joint], arithmetic)
+        own.get(i, at_rest) if joint.mimic is None else _mimicked(joint.mimic, own[joint.mimic.joint], arithmetic)
         for i, joint in enumerate(model.joints)
     ]
 
 
-def _following(mimic: Mimic, master: JointState, arithmetic: Arithmetic) -> JointState:
-    """Q = multiplier q_master + offset, and its time derivatives."""
+def _mimicked(mimic: Mimic, followed: JointState, arithmetic: Arithmetic) -> JointState:
+    """The state of a mimic joint: multiplier q + offset, and its time derivatives."""
     rounded = UNIT_ROUNDOFF if mimic.rounded else 0.0
     multiplier, offset = (arithmetic.number(x, rounded * abs(x)) for x in (mimic.multiplier, mimic.offset))
-    (q,), (v,), (a,) = master.q, master.v, master.a
+    (q,), (v,), (a,) = followed.q, followed.v, followed.a
     return JointState([q * multiplier + offset], [v * multiplier], [a * multiplier])
 
 
-def _joint_effects(effects: JointEffects, state: JointState, arithmetic: Arithmetic) -> list[Scalar]:
-    """Armature a + damping v + friction sign(v) for each degree of freedom; 0 where the joint has none of them."""
-    parts = []
+def joint_effects(effects: JointEffects, state: JointState, arithmetic: Arithmetic) -> list[Scalar]:
+    """The force armature a + damping v + friction sign(v) of each degree of freedom; 0 where the joint has none."""
+    forces = []
     for v, a in zip(state.v, state.a, strict=True):
         force: Scalar = 0
         if effects.armature:
@@ -150,14 +149,14 @@ def _joint_effects(effects: JointEffects, state: JointState, arithmetic: Arithme
             force = v * arithmetic.number(effects.damping, 0.0) + force
         if effects.friction:
             force = arithmetic.sign(v) * arithmetic.number(effects.friction, 0.0) + force
-        parts.append(force)
-    return parts
+        forces.append(force)
+    return forces
 
 
-def _generalised(model: Model, arithmetic: Arithmetic, forces: Sequence[Sequence[Scalar]]) -> list[Scalar]:
-    """Forces of all joints as forces of the independent ones: what drives a joint also drives those that follow it.
+def generalised_forces(model: Model, arithmetic: Arithmetic, forces: Sequence[Sequence[Scalar]]) -> list[Scalar]:
+    """Forces of all joints, mimic joints included, as forces along the degrees of freedom of the robot.
 
-    By virtual work a joint that follows with multiplier m adds m times its own force.
+    By virtual work a joint that follows another with multiplier m adds m times its force to that of the other.
     """
     total = {i: list(forces[i]) for i in model.independent}
     for i, joint in enumerate(model.joints):
@@ -169,9 +168,9 @@ def _generalised(model: Model, arithmetic: Arithmetic, forces: Sequence[Sequence
 
 
 def body_of(joint: Joint, link: Link, number: NumberOf) -> Body:
-    """One link with its joint, in scalars made by `number`."""
+    """One link with its joint, in scalars of one kind."""
 
-    def within(error: float) -> Callable[[float], Scalar]:
+    def lift(error: float) -> Callable[[float], Scalar]:
         return lambda value: number(value, error)
 
     # Rotation matrices from rpy, axes divided by their length and turned tensors are rounded; the rest is as written.
@@ -181,10 +180,10 @@ def body_of(joint: Joint, link: Link, number: NumberOf) -> Body:
     return Body(
         type=joint.type,
         axis=Vector.of(joint.axis, lambda value: number(value, normalised * abs(value))),
-        R=Matrix.of(joint.R, within(turned)),
-        p=Vector.of(joint.p, within(0.0)),
+        R=Matrix.of(joint.R, lift(turned)),
+        p=Vector.of(joint.p, lift(0.0)),
         M=number(link.mass, 0.0),
-        r_C=Vector.of(link.com, within(0.0)),
-        I=Matrix.of(link.inertia, within(turned_tensor)),
+        r_C=Vector.of(link.com, lift(0.0)),
+        I=Matrix.of(link.inertia, lift(turned_tensor)),
         parameters=tuple(number(x, 0.0) for x in joint.type.parameters),
     )

@@ -1,4 +1,4 @@
-"""The spatial inertia of a body: what there is to say of its mass, over scalars of any kind.
+"""The spatial inertia of a body, over scalars of any kind.
 
 As mass, first moment and tensor about the origin of one frame, inertias of bodies that move as one add up
 (Featherstone, "Rigid Body Dynamics Algorithms", section 2.13). Nothing but `about_com` divides, so masses may have any

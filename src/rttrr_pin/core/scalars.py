@@ -1,8 +1,8 @@
 """One recursion, many arithmetics: what it takes to run the reference recursion on one kind of scalar.
 
 An `Arithmetic` says how a number of the model, a column of a batch and a sine become scalars of its kind. `FLOAT` is
-the readable reference: Python floats for one state, NumPy arrays for a batch, the same operations in the same order,
-hence the same bits.
+that of the reference recursion: Python floats for one state, NumPy arrays for a batch, the same operations in the same
+order, hence the same bits.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ UNIT_ROUNDOFF = 2.0**-53
 """u: the relative error of one correctly rounded float64 operation; eps is 2 u."""
 
 EPS = 2 * UNIT_ROUNDOFF
-"""The distance from 1 to the next float64: the unit in which errors are told."""
+"""The distance from 1 to the next float64: the unit in which errors are reported."""
 
 SLACK = 1.0 + 1e-9
 """Covers the rounding of running error bounds themselves."""
 
 SINE_ULPS = 4
-"""Of a sine or cosine: what NumPy states for its vectorised float64; compiled code keeps within one."""
+"""Error of a sine or cosine, in ulps, as NumPy states it for its vectorised float64; compiled code keeps within one."""
 
 ROTATION_ERROR = 8 * UNIT_ROUNDOFF
-"""Of an entry of a rotation matrix made from rpy: a sum of two products of sines and cosines, each within an ulp."""
+"""Absolute, of an entry of a rotation matrix computed from rpy: a sum of two products of sines and cosines."""
 
 AXIS_ERROR = 4 * UNIT_ROUNDOFF
 """Relative, of a component of an axis that was divided by its length."""

@@ -1,7 +1,7 @@
-"""What a joint type must say: the rest of the package asks it, and never which type it is.
+"""The interface of a joint type: the rest of the package asks the type, and never which type it is.
 
 A joint type is one class in one file beside this one, and one line in `JOINT_TYPES`. `tests/core/test_joint_types.py`
-holds every type to what is promised here.
+checks every type against this interface.
 """
 
 from __future__ import annotations
@@ -121,7 +121,7 @@ class JointType(ABC):
 
     @abstractmethod
     def motion(self, body: Body, state: JointState, sincos: SinCos) -> JointMotion:
-        """What the coordinates do to {i}."""
+        """Placement and motion of {i} against the parent, from the coordinates, rates and accelerations."""
 
     @abstractmethod
     def driving_force(self, body: Body, f: Vector, n: Vector) -> list[Scalar]:
@@ -138,7 +138,10 @@ class JointType(ABC):
         return [Dual(x, {first + k: 1.0}) for k, x in enumerate(q)]
 
     def gyroscopic(self, v: Sequence[Scalar], p: Sequence[Scalar]) -> Sequence[Scalar]:
-        """What the momenta p of the rates v gain because they turn with {i}; none where rates are derivatives."""
+        """Gyroscopic terms: the rates at which the momenta p of the rates v change because they turn with {i}.
+
+        Zero where the rates are derivatives of the coordinates.
+        """
         return [0] * self.nv
 
     def coordinates_at(self, displacement: Array) -> Array:
@@ -162,7 +165,7 @@ class JointType(ABC):
             first_moment: whether the carrier can take a first moment.
 
         Returns:
-            What stays, and what may move, both in {i}; None where nothing may.
+            The link with what stays, and the inertia that may move, both in {i}; None where nothing may move.
         """
         return None
 
