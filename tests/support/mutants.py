@@ -28,8 +28,8 @@ STEPS = (newton_euler.outwards, newton_euler.inwards)
 EQUIVALENT = {
     "outwards: transpose body.I in body.I @ w_dot": "an inertia tensor is symmetric",
     "outwards: transpose body.I in body.I @ w": "an inertia tensor is symmetric",
-    "_joint_effects: drop force": "armature is the first term, to which nothing was added before",
-    "_joint_effects: negate force": "armature is the first term, to which nothing was added before",
+    "joint_effects: drop force": "armature is the first term, to which nothing was added before",
+    "joint_effects: negate force": "armature is the first term, to which nothing was added before",
 }
 """Errors that change no number, and why."""
 
@@ -98,7 +98,7 @@ def _functions() -> Iterator[Any]:
     """The mechanics of the core: the recursion, mimic joints, friction, and how joints move."""
     for module in (newton_euler, rotations):
         yield from (x for x in vars(module).values() if inspect.isfunction(x) and x.__module__ == module.__name__)
-    yield from (dynamics.dynamics, dynamics._following, dynamics._joint_effects, dynamics._generalised)
+    yield from (dynamics.dynamics, dynamics._mimicked, dynamics.joint_effects, dynamics.generalised_forces)
     methods = (getattr(type(kind), name) for kind in JOINT_TYPES.values() for name in ("motion", "driving_force"))
     yield from dict.fromkeys(methods)
 
