@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from importlib.util import module_from_spec, spec_from_file_location
 from itertools import combinations, product
 from pathlib import Path
 from typing import Any
@@ -19,7 +20,6 @@ from numpy.typing import NDArray
 from rttrr_pin.core.solids import Box, Cylinder, Part, RigidBody, Sphere, combine
 from rttrr_pin.errors import InputError
 from rttrr_pin.modular_arm import CODES, MATERIALS, MODULES, build_arm, build_urdf, modules_of
-from rttrr_pin.modular_arm.readme import PAPER, readme_tables, with_tables, write_all
 from support.tolerances import MODEL, ROUNDING, URDF_DIGITS, norm_error
 
 Floats = NDArray[np.float64]
@@ -33,6 +33,12 @@ PAYLOAD = 3.0
 
 codes = st.text(alphabet="RT", min_size=1, max_size=12)
 every_code = pytest.mark.parametrize("code", CODES)
+
+
+SPEC = spec_from_file_location("arms", Path(__file__).parents[2] / "docs" / "arms.py")
+assert SPEC is not None and SPEC.loader is not None
+arms = module_from_spec(SPEC)
+SPEC.loader.exec_module(arms)
 
 
 def root_of(code: str) -> ET.Element:
@@ -87,12 +93,12 @@ def test_no_other_urdf_is_bundled() -> None:
 
 def test_readme_tables_are_fresh() -> None:
     text = (URDF / "README.md").read_text(encoding="utf-8")
-    assert with_tables(text) == text
+    assert arms.with_tables(text) == text
     assert all(f"| {material.name} | {material.density:g} |" in text for material in MATERIALS)
 
 
 def test_readme_gives_every_joint_number_of_every_arm() -> None:
-    tables = readme_tables()
+    tables = arms.readme_tables()
     for code in CODES:
         rows = tables.partition(f"## {code}: joints")[2].partition("\n## ")[0].splitlines()
         for joint in root_of(code).iter("joint"):
@@ -106,7 +112,7 @@ def test_readme_gives_every_joint_number_of_every_arm() -> None:
 
 def test_write_all_writes_the_bundled_files_and_nothing_else(tmp_path: Path) -> None:
     (tmp_path / "README.md").write_bytes((URDF / "README.md").read_bytes())
-    written = write_all(tmp_path)
+    written = arms.write_all(tmp_path)
     assert set(written) == set(tmp_path.iterdir())
     for path in written:
         assert path.read_bytes() == (URDF / path.name).read_bytes()
@@ -115,7 +121,7 @@ def test_write_all_writes_the_bundled_files_and_nothing_else(tmp_path: Path) -> 
 def test_readme_without_marks_is_refused_before_anything_is_written(tmp_path: Path) -> None:
     (tmp_path / "README.md").write_text("no marks", encoding="utf-8")
     with pytest.raises(InputError, match="lacks a mark"):
-        write_all(tmp_path)
+        arms.write_all(tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["README.md"]
 
 
@@ -393,7 +399,7 @@ def test_rttrr_has_the_structure_of_the_paper() -> None:
 def test_every_published_number_has_its_equation() -> None:
     wanted = {(joint, letter) for joint in PUBLISHED for letter in "xyz"}
     wanted |= {(joint, "axis") for joint, (kind, _, _) in PUBLISHED.items() if kind != "fixed"}
-    assert set(PAPER) == wanted
+    assert set(arms.PAPER) == wanted
 
 
 def test_rttrr_mass_centres_accelerate_as_the_paper_prints() -> None:

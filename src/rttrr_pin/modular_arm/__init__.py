@@ -1,6 +1,6 @@
 """The bundled arms, built from modules: a code such as "RTTRR" in, URDF text out.
 
-`python -m rttrr_pin.modular_arm urdf` writes urdf/*.urdf, and the tables in urdf/README.md where that file is.
+`python docs/arms.py urdf` writes urdf/*.urdf, and the tables in urdf/README.md where that file is.
 Of the RTTRR arm, the paper (Detesan) gives the structure and which lengths exist; every number is ours.
 
 A joint's module has two halves: the *stator*, which belongs to the link before the joint, and the *mover*, which

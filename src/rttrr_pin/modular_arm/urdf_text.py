@@ -122,7 +122,7 @@ digits. ixy, ixz and iyz are the matrix elements. Base: no inertial, since it do
 {densities}
 {written}
 """
-_BUNDLED = "Written by `python -m rttrr_pin.modular_arm urdf`: do not edit. Every number is in urdf/README.md."
+_BUNDLED = "Written by `python docs/arms.py urdf`: do not edit. Every number is in urdf/README.md."
 _NEW = "Written by `rttrr-pin new {code}`. Every number of its modules is in urdf/README.md of rttrr-pin."
 
 

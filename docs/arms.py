@@ -1,7 +1,11 @@
-"""The bundled files and the tables of urdf/README.md: one row for each number, with its source."""
+"""The bundled arms: `python docs/arms.py urdf` writes the files, and the tables of urdf/README.md.
+
+The tables have one row for each number, with its source.
+"""
 
 from __future__ import annotations
 
+import argparse
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import pairwise
 from pathlib import Path
@@ -188,3 +192,10 @@ def _inertia_rows(arm: Arm) -> Iterator[Row]:
         yield from ((name, f"com {'xyz'[i]}", computed([body.com[i]]), "m") for i in range(3))
         for i, j in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)):
             yield (name, f"i{'xyz'[i]}{'xyz'[j]}", computed([body.inertia[i, j]]), "kg m^2")
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description="Writes the bundled files and the tables of README.md.")
+    parser.add_argument("directory", type=Path, help="where to write, such as urdf")
+    for written in write_all(parser.parse_args().directory):
+        print(written)
