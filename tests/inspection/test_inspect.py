@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+import subprocess
+import sys
 from collections.abc import Iterable
 from fractions import Fraction
 from pathlib import Path
@@ -425,6 +427,30 @@ def test_long_tables_are_cut_unless_full(tmp_path: Path, capsys: pytest.CaptureF
     assert main(["inspect", path, "--full"]) == 1
     out = capsys.readouterr().out
     assert "--full" not in out and all(f"f{k} " in out for k in range(60))
+
+
+def test_names_deep_in_a_chain_are_whole_at_80_columns() -> None:
+    names = [f"link_number_{k}_of_the_arm" for k in range(60)]
+    links = "".join(f'<link name="{name}">{inertial()}</link>' for name in names)
+    joints = "".join(joint(f"j{k}", names[k], names[k + 1]) for k in range(59))
+    lines = look(f'<robot name="chain">{links}{joints}</robot>').summary(full=True, width=80).splitlines()
+    assert all(len(line) <= 80 for line in lines)
+    assert [line.split()[0] for line in lines if line.startswith("link_number")] == names
+
+
+def test_branches_are_marked_and_indented() -> None:
+    links = "".join(f'<link name="{name}">{inertial()}</link>' for name in "abcd")
+    joints = joint("ab", "a", "b") + joint("bc", "b", "c") + joint("ad", "a", "d")
+    lines = look(f'<robot name="r">{links}{joints}</robot>').summary().splitlines()
+    start = next(k for k, line in enumerate(lines) if line.startswith("link"))
+    assert [line[:4].rstrip() for line in lines[start + 1 : start + 5]] == ["a", "- b", "  c", "- d"]
+
+
+def test_inspecting_a_robot_without_meshes_loads_no_large_library() -> None:
+    large = ["scipy", "trimesh", "yourdfpy", "pinocchio", "llvmlite", "flint"]
+    program = f"from rttrr_pin.cli import main; import sys; main(['inspect']); print([x for x in {large} if x in sys.modules])"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert done.stdout.splitlines()[-1] == "[]"
 
 
 def test_a_robot_made_from_numbers_has_no_file_to_inspect() -> None:

@@ -28,7 +28,7 @@ def other_side(name: str) -> tuple[str, ...]:
     left finger of the right hand if the hands are of one kind, and to its right finger if they are mirrored.
     """
     all_changed, first_changed = (
-        WORD.sub(lambda found: _same_case(OTHER[found[0].lower()], found[0]), name, count=n) for n in (0, 1)
+        WORD.sub(lambda word: _same_case(OTHER[word[0].lower()], word[0]), name, count=n) for n in (0, 1)
     )
     return tuple(dict.fromkeys(other for other in (all_changed, first_changed) if other != name))
 

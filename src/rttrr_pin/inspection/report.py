@@ -34,8 +34,11 @@ def summary(result: Inspection, full: bool, width: int) -> str:
     """Links, findings, what each parser does, and the count."""
     shown = result.links if full else result.links[:MOST_LINKS]
     lines = [
-        f"{result.robot}: {len(result.links)} links, {result.mass:.6g} kg, centre of mass ({_triple(result.com)}) m "
-        f"in the frame of {result.links[0].name}",
+        _wrapped(
+            f"{result.robot}: {len(result.links)} links, {result.mass:.6g} kg, centre of mass ({_triple(result.com)}) "
+            f"m in the frame of {result.links[0].name}",
+            width,
+        ),
         "",
         *_tree(shown, width),
     ]
@@ -128,7 +131,7 @@ def _cells(link: LinkRow) -> tuple[str, ...]:
 
 def _findings(findings: Iterable[Finding], full: bool, width: int) -> Iterator[str]:
     counts: dict[str, int] = {}
-    for finding in sorted(findings, key=lambda found: (list(Severity).index(found.severity), found.id, found.line)):
+    for finding in sorted(findings, key=lambda each: (list(Severity).index(each.severity), each.id, each.line)):
         counts[finding.id] = counts.get(finding.id, 0) + 1
         if full or counts[finding.id] <= MOST_ALIKE:
             line = f" (line {finding.line})" if finding.line else ""

@@ -52,10 +52,10 @@ class Element:
 
     def child(self, tag: str) -> Element | None:
         """The only child of that tag, if there is one."""
-        found = self.xml.findall(tag)
-        if len(found) > 1:
-            raise self.error(f"has {len(found)} <{tag}> elements, expected at most one: remove the others")
-        return Element(found[0], self.source, self.label) if found else None
+        children = self.xml.findall(tag)
+        if len(children) > 1:
+            raise self.error(f"has {len(children)} <{tag}> elements, expected at most one: remove the others")
+        return Element(children[0], self.source, self.label) if children else None
 
     def needed(self, tag: str, why: str) -> Element:
         """The child of that tag, which must be there."""

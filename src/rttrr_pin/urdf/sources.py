@@ -94,10 +94,10 @@ def robots_in(folder: str | os.PathLike[str]) -> dict[str, Path]:
         raise UrdfError("is no folder, expected one that holds URDF files", source=shortened(str(folder)))
     paths = {path.relative_to(top): path for path in sorted(top.rglob("*")) if path.suffix in SUFFIXES}
     shown = (path for path in paths if not any(part.startswith(".") for part in path.parts))
-    found = {path.as_posix(): paths[path] for path in shown if paths[path].is_file()}
-    if not found:
+    robots = {path.as_posix(): paths[path] for path in shown if paths[path].is_file()}
+    if not robots:
         raise UrdfError("is a folder without a .urdf or .xacro file: name the file", source=shortened(str(folder)))
-    return found
+    return robots
 
 
 def find(source: AnySource) -> Source:
@@ -162,14 +162,14 @@ def _file(name: str, path: Path) -> Source:
 
 
 def _only_robot(folder: Path) -> Path:
-    found = robots_in(folder)
-    if len(found) > 1:
-        names = ", ".join(list(found)[:12]) + (f", ... ({len(found)} in all)" if len(found) > 12 else "")
+    robots = robots_in(folder)
+    if len(robots) > 1:
+        names = ", ".join(list(robots)[:12]) + (f", ... ({len(robots)} in all)" if len(robots) > 12 else "")
         raise UrdfError(
-            f"is a folder with {len(found)} robots ({names}): name one of them, or call load_all for all",
+            f"is a folder with {len(robots)} robots ({names}): name one of them, or call load_all for all",
             source=shortened(str(folder)),
         )
-    return next(iter(found.values()))
+    return next(iter(robots.values()))
 
 
 def _example(name: str) -> Path:
@@ -178,8 +178,8 @@ def _example(name: str) -> Path:
     matches = [path for path in known.values() if name in (f"{_folder(path.parts)}/{path.stem}", path.stem)]
     if name in known or len(matches) == 1:
         return known.get(name, matches[0])
-    twins = [other for other in known if other.rpartition("/")[2] == name]
-    raise UnknownNameError("example robot", shortened(name), twins or known)
+    namesakes = [other for other in known if other.rpartition("/")[2] == name]
+    raise UnknownNameError("example robot", shortened(name), namesakes or known)
 
 
 def _folder(parts: tuple[str, ...]) -> str:

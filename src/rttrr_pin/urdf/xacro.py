@@ -29,14 +29,14 @@ def expanded(path: Path) -> bytes:
     except RecursionError:
         raise UrdfError("xacro cannot expand it: a macro calls itself without end", source=str(path)) from None
     except Exception as error:  # the file's own expressions run here, and may raise anything
-        told = " ".join(str(error).split()) or repr(error)
-        raise UrdfError(f"xacro cannot expand it: {told}{_fix(told)}", source=str(path)) from error
+        reason = " ".join(str(error).split()) or repr(error)
+        raise UrdfError(f"xacro cannot expand it: {reason}{_fix(reason)}", source=str(path)) from error
 
 
-def _fix(told: str) -> str:
+def _fix(reason: str) -> str:
     """What to do about the commonest causes."""
-    if "ament_index_python" in told:
+    if "ament_index_python" in reason:
         return ": $(find ...) asks ROS; source its setup first, or run xacro there and pass the URDF"
-    if "Undefined substitution argument" in told:
+    if "Undefined substitution argument" in reason:
         return ": run `xacro FILE NAME:=VALUE` yourself and pass the URDF, or give the argument a default"
     return ""
