@@ -23,6 +23,7 @@ from rttrr_pin.errors import InputError, NumberError, ShapeError, UnknownNameErr
 from rttrr_pin.validation import Sampler
 from support.inputs import BAD, JOINTS, PAYLOADS, ZERO, some
 from support.serial_chains import EXAMPLES
+from support.slow import slow_after, slow_but
 from support.tolerances import ROUNDING, norm_error
 from support.trees import random_tree
 
@@ -592,7 +593,7 @@ def rough(rttrr: Robot) -> Robot:
 NOT_FINITE = (np.nan, np.inf, -np.inf)
 
 
-@pytest.mark.parametrize("value", NOT_FINITE)
+@pytest.mark.parametrize("value", slow_after(1, NOT_FINITE))
 @pytest.mark.parametrize("name", QUANTITIES)
 def test_what_is_not_finite_is_found_in_every_input(rough: Robot, name: str, value: float, emitter: str) -> None:
     """Also where no output depends on it, or only on its sign."""
@@ -854,7 +855,7 @@ assert np.array_equal(robot.compile("tau")(*state, threads=2), expected)
 
 
 def test_a_forked_process_computes_on_threads_of_its_own() -> None:
-    subprocess.run([sys.executable, "-c", FORKED], check=True, timeout=60)
+    subprocess.run([sys.executable, "-c", FORKED], check=True, timeout=600)
 
 
 def calls_of(made: Kernel) -> dict[str, Callable[[], Any]]:
@@ -879,7 +880,7 @@ def calls_of(made: Kernel) -> dict[str, Callable[[], Any]]:
     }
 
 
-@pytest.mark.parametrize("case", calls_of(None))  # type: ignore[arg-type]
+@pytest.mark.parametrize("case", slow_but(("batch", "payload", "error"), calls_of(None)))  # type: ignore[arg-type]
 def test_calls_leave_nothing_behind(rttrr: Robot, case: str) -> None:
     """No reference to an argument, to None or to True, and no memory that grows with the count of calls."""
     made = rttrr.compile("tau")

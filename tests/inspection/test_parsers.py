@@ -405,6 +405,7 @@ def bundled_and_examples() -> dict[str, str | Path]:
         return {name: name for name in bundled()}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("parser", "program"), PROGRAMS)
 def test_the_rules_hold_for_real_robots(parser: str, program: Program) -> None:
     wrong, seen = {}, 0

@@ -22,7 +22,7 @@ from support.tolerances import ROUNDING, norm_error
 
 def run(*words: str, cwd: Path | None = None) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [sys.executable, "-m", "rttrr_pin", *words], capture_output=True, text=True, cwd=cwd, timeout=120, check=False
+        [sys.executable, "-m", "rttrr_pin", *words], capture_output=True, text=True, cwd=cwd, timeout=600, check=False
     )
 
 
@@ -193,7 +193,7 @@ def test_json_goes_into_a_pipe_and_through_a_link(tmp_path: Path) -> None:
     (tmp_path / "link.json").symlink_to(tmp_path / "target.json")
     reader = subprocess.Popen(["cat", str(tmp_path / "fifo")], stdout=subprocess.PIPE, text=True)
     assert main(["validate", "--states", "5", "--quiet", "--json", str(tmp_path / "fifo")]) == 0
-    out, _ = reader.communicate(timeout=30)
+    out, _ = reader.communicate(timeout=600)
     assert json.loads(out)["verdict"] == "agree"
     assert (tmp_path / "fifo").is_fifo()
     assert main(["validate", "--states", "5", "--quiet", "--json", str(tmp_path / "link.json")]) == 0

@@ -51,7 +51,7 @@ def test_an_option_without_its_value_or_with_one_too_many(
 )
 def test_streams_that_take_nothing(command: str, code: int, message: str) -> None:
     words = ["sh", "-c", f"{sys.executable} -m rttrr_pin {command}"]
-    done = subprocess.run(words, capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(words, capture_output=True, text=True, timeout=600, check=False)
     assert done.returncode == code
     assert message in done.stderr and "Traceback" not in done.stderr and "Exception ignored" not in done.stderr
 
@@ -61,7 +61,7 @@ def test_a_reader_that_leaves_does_not_change_the_verdict(words: list[str]) -> N
     read, write = os.pipe()
     os.close(read)
     command = [sys.executable, "-m", "rttrr_pin", "validate", "--states", "50", *words]
-    done = subprocess.run(command, stdout=write, stderr=subprocess.PIPE, text=True, timeout=120, check=False)
+    done = subprocess.run(command, stdout=write, stderr=subprocess.PIPE, text=True, timeout=600, check=False)
     os.close(write)
     assert done.returncode == 0
     assert "Traceback" not in done.stderr
@@ -87,7 +87,7 @@ def test_interrupt_leaves_cleanly(tmp_path: Path) -> None:
     assert process.stdout is not None and process.stdout.readline() == "ready\n"
     time.sleep(1)
     process.send_signal(signal.SIGINT)
-    out, error = process.communicate(timeout=60)
+    out, error = process.communicate(timeout=600)
     assert process.returncode == 130
     assert out == ""
     assert "interrupted" in error and "Traceback" not in error

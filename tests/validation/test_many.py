@@ -22,6 +22,7 @@ def folder(tmp_path: Path) -> Path:
     return tmp_path
 
 
+@pytest.mark.slow
 def test_every_robot_has_a_row_for_each_base(folder: Path) -> None:
     (folder / "broken.urdf").write_text(BROKEN)
     sources = {path.stem: path for path in sorted(folder.glob("*.urdf"))}
