@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,6 +12,7 @@ from rttrr_pin.core.algebra import Vector
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.newton_euler import Payload
 from rttrr_pin.core.scalars import Arithmetic, columns
+from rttrr_pin.errors import InputError
 
 
 @dataclass(frozen=True, slots=True)
@@ -48,6 +50,12 @@ class RandomPayload:
     link: str | None = None
     force: float = 50.0
     moment: float = 10.0
+
+    def __post_init__(self) -> None:
+        for name in ("force", "moment"):
+            half_range = getattr(self, name)
+            if not 0.0 <= half_range < math.inf:
+                raise InputError(f"{name} of RandomPayload is {half_range}: expected a finite number, not negative")
 
 
 def payloads_of(loads: Sequence[Load], arithmetic: Arithmetic) -> list[Payload]:

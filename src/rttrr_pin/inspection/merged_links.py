@@ -7,7 +7,9 @@ from functools import lru_cache
 
 import numpy as np
 
+from rttrr_pin.core.algebra import Vector
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.urdf.document import UrdfDocument
 
 
@@ -34,7 +36,7 @@ class MergedLink:
         inertia = self.inertia + other.inertia
         if self.mass and other.mass and mass:
             d = self.moment / self.mass - other.moment / other.mass
-            inertia = inertia + self.mass * other.mass / mass * (d @ d * np.eye(3) - np.outer(d, d))
+            inertia = inertia + self.mass * other.mass / mass * point_tensor(Vector.of(d)).array
         return MergedLink(members, mass, self.moment + other.moment, inertia)
 
     def moved(self, R: Array, p: Array) -> MergedLink:

@@ -8,7 +8,9 @@ from itertools import permutations
 
 import numpy as np
 
+from rttrr_pin.core.algebra import Vector
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.inspection.bodies import principal
 from rttrr_pin.inspection.check import Check, Observation, Subject
 from rttrr_pin.inspection.exact import DIAGONAL
@@ -165,7 +167,7 @@ def _about_origin(inertial: UrdfInertial) -> Iterator[Reading]:
     """The numbers are about the link's origin: I - m (c.c 1 - c c^T) is about the centre of mass."""
     c, R = inertial.origin.p, inertial.origin.R
     if c.any():
-        shifted = inertial.inertia - float(inertial.mass) * (c @ c * np.eye(3) - np.outer(c, c))
+        shifted = inertial.inertia - float(inertial.mass) * point_tensor(Vector.of(c)).array
         yield Reading(R.T @ shifted @ R, "about the link's origin and not about the centre of mass")
 
 

@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
-from rttrr_pin.core.algebra import IDENTITY, ZERO, Matrix, Scalar, Vector
+from rttrr_pin.core.algebra import ZERO, Matrix, Scalar, Vector
 from rttrr_pin.core.dynamics import Result
+from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.newton_euler import Payload
 from rttrr_pin.core.rotations import rotation
@@ -137,7 +138,7 @@ def _split(case: Case, body: Body, i: int) -> tuple[Body, Body]:
         return Vector.of(values, lambda value: case.arithmetic.number(value, 0.0))
 
     d = vector(0.25, -0.125 * (1 + i % 3), 0.375)
-    apart = (IDENTITY * d.dot(d) - Matrix.outer(d, d)) * body.M * 3
+    apart = point_tensor(d) * body.M * 3
     x = Matrix((vector(0.5, 0.25, -0.125), vector(0.25, -0.375, 0.0625), vector(-0.125, 0.0625, 0.75)))
     quarter = replace(body, M=body.M * 0.25, r_C=body.r_C + d * 3, I=body.I * 0.25 + x)
     return quarter, replace(body, M=body.M * 0.75, r_C=body.r_C - d, I=body.I * 0.75 - x - apart)
