@@ -36,29 +36,31 @@ def regroup(model: Model, links: Sequence[Body]) -> tuple[Model, list[Body]]:
         which single are no longer those of the file. The numbers in the model are, and are not to be used.
     """
     model, bodies = _carried_by_moving_links(model, list(links))
-    moved_mass = [0.0] * len(bodies)  # sum of |M| of the links whose mass or first moment a link has taken
     own_mass = [_size(body.M) for body in bodies]
-    for moves in (False, True):  # fixed links first: they are one body with their carrier
-        for i in reversed(range(len(bodies))):
-            if (model.joints[i].nv > 0) is not moves:
-                continue
-            parent, mass = model.joints[i].parent, _size(bodies[i].M)
-            for first_moment in (True, False):
-                parts = bodies[i].type.regrouped(bodies[i], first_moment)
-                if parts is None or _is_nothing(parts[1]):
-                    break
-                rest, moved = parts
-                if parent < 0:  # the root stands still: what it takes is gone
-                    bodies[i] = rest
-                    break
-                heavy = moved.m != 0.0 or any(moved.h)
-                total = _size(bodies[parent].M + moved.m)
-                taken = moved_mass[parent] + mass if heavy else 0.0
-                if heavy and not total >= LEAST_MASS * max(own_mass[parent], taken):
-                    continue
-                if heavy:
-                    moved_mass[parent] = taken
-                bodies[i], bodies[parent] = rest, _with(bodies[parent], moved.moved(bodies[i].R, bodies[i].p))
+    taken_mass = [0.0] * len(bodies)  # sum of |M| of the links whose mass or first moment a link has taken
+
+    def taken(i: int, moved: SpatialInertia, parent: int) -> bool:
+        """Whether the carrier takes what link i would give it."""
+        if parent < 0 or not (moved.m != 0.0 or any(moved.h)):
+            return True  # the root stands still, and a tensor alone needs no mass
+        gross = taken_mass[parent] + _size(bodies[i].M)
+        if not _size(bodies[parent].M + moved.m) >= LEAST_MASS * max(own_mass[parent], gross):
+            return False
+        taken_mass[parent] = gross
+        return True
+
+    inwards = reversed(range(len(bodies)))
+    for i in sorted(inwards, key=lambda i: model.joints[i].nv > 0):  # fixed links first: they are one body with theirs
+        parent = model.joints[i].parent
+        for first_moment in (True, False):
+            parts = bodies[i].type.regrouped(bodies[i], first_moment)
+            if parts is None or _is_nothing(parts[1]):
+                break
+            rest, moved = parts
+            if taken(i, moved, parent):
+                if parent >= 0:
+                    bodies[parent] = _with(bodies[parent], moved.moved(bodies[i].R, bodies[i].p))
+                bodies[i] = rest
                 break
     return model, bodies
 
