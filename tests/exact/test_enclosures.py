@@ -31,7 +31,7 @@ from rttrr_pin.validation.states import States
 from support.high_precision import exact_dynamics, mp_rotation
 from support.serial_chains import EXAMPLES, random_chain
 from support.tolerances import SIXTY_DIGITS
-from support.trees import random_tree
+from support.trees import MUTATED, random_tree
 
 ROWS = (4, STRAIGHT_LINE_FROM)
 """States for which the recursion runs on balls as it stands, and for which its operations are recorded first."""
@@ -368,6 +368,15 @@ def test_a_model_that_was_altered_is_not_its_file(name: str, what: str) -> None:
     kind = "joint" if what in ("axis", "R", "p") else "link"
     with pytest.raises(InputError, match=f"{kind} .* is not what its file says.*altered since"):
         Robot(altered(robot.model, what)).enclose(zeros, zeros, zeros, parameters="text")
+
+
+def test_a_mimic_that_was_altered_is_not_its_file() -> None:
+    model = rttrr_pin.load(random_tree(*MUTATED)).model
+    joints = list(model.joints)
+    k, follower = next((k, joint) for k, joint in enumerate(joints) if joint.mimic)
+    joints[k] = replace(follower, mimic=replace(follower.mimic, offset=0.25))
+    with pytest.raises(InputError, match=f"joint {follower.name!r} .* is not what its file says"):
+        exact_parameters(replace(model, joints=tuple(joints)), "read")
 
 
 # Inputs and shapes
