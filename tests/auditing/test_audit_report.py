@@ -11,15 +11,15 @@ from pathlib import Path
 import pytest
 from rich.console import Console
 
-from rttrr_pin.auditing import Audit, ComponentAudit, Finding, Kind, Publication, Verdict, audit, read_publication
+from rttrr_pin.auditing import AuditResult, ComponentAudit, Finding, Kind, Publication, Verdict, read_publication
 from rttrr_pin.auditing.errata import WRITERS, errata
 from rttrr_pin.auditing.errata.content import left_side, prose
 from rttrr_pin.auditing.errata.html import mathml
 from rttrr_pin.auditing.errata.sheet import Code, Formula, Words
 from rttrr_pin.auditing.errata.typeset import settable
 from rttrr_pin.auditing.evidence import Evidence
-from rttrr_pin.auditing.report import audit_data, show_audit, show_equations
-from rttrr_pin.auditing.wording import by_term, dimension_summary, evidence_words, totals, verdict_words
+from rttrr_pin.auditing.report import show_audit, show_equations
+from rttrr_pin.auditing.wording import dimension_summary, evidence_words, verdict_words
 from rttrr_pin.reporting.files import as_json
 from support.pdflatex import compiled
 
@@ -36,19 +36,15 @@ def textbook() -> Publication:
     return read_publication(TWO_LINK)
 
 
-@pytest.fixture(scope="module")
-def of_the_paper() -> Audit:
-    return audit(read_publication())
-
-
 def component(*findings: Finding, **given) -> ComponentAudit:
     verdict = Verdict.DIFFERS if findings else Verdict.MATCH
     values = {
+        "unit": "N m",
         "evidence": EVIDENCE,
         "proven": True,
         "corrected": ((r"m_1 \, l_1", False), (r"+ m_2 \, l_2", bool(findings))),
     }
-    return ComponentAudit("tau_1", "tau1", 0, 2, 2, verdict, findings, **(values | given))
+    return ComponentAudit("tau_1", "tau1", 0, 2, 2, verdict, findings=findings, **(values | given))
 
 
 def finding(
@@ -57,11 +53,11 @@ def finding(
     return Finding("tau1.1", kind, printed, derived, given.pop("dimension_ok", True), **given)
 
 
-def of(publication: Publication, *components: ComponentAudit) -> Audit:
-    return Audit(publication, components, (), 0)
+def of(publication: Publication, *components: ComponentAudit) -> AuditResult:
+    return AuditResult(publication, components, (), 0)
 
 
-def shown(show, result: Audit, width: int = 80, **given) -> str:
+def shown(show, result: AuditResult, width: int = 80, **given) -> str:
     console = Console(width=width, file=io.StringIO(), highlight=False)
     show(result, console, **given)
     return console.file.getvalue()
@@ -70,23 +66,24 @@ def shown(show, result: Audit, width: int = 80, **given) -> str:
 # Counting
 
 
-def test_totals_add_up(of_the_paper: Audit) -> None:
-    found = totals(of_the_paper.components)
-    assert found.components == sum(found.verdicts.values()) == len(of_the_paper.components)
-    assert found.findings == sum(found.kinds.values()) == len(of_the_paper.findings)
-    assert 0 < found.dimensionally_wrong <= sum(f.dimension_ok is False for f in of_the_paper.findings)
+def test_totals_add_up(of_the_paper: AuditResult) -> None:
+    totals = of_the_paper.totals
+    assert totals.components == sum(totals.verdicts.values()) == len(of_the_paper.components)
+    assert totals.findings == sum(totals.kinds.values()) == len(of_the_paper.findings)
+    assert 0 < totals.dimensionally_wrong <= sum(f.dimension_ok is False for f in of_the_paper.findings)
 
 
-def test_a_term_with_two_slips_is_one_term_and_two_in_excess_are_two() -> None:
-    two_slips = [finding(Kind.SYMBOL, dimension_ok=False), finding(Kind.SIGN, dimension_ok=False)]
+def test_a_term_with_two_errors_is_one_term_and_two_in_excess_are_two(textbook: Publication) -> None:
+    two_errors = [finding(Kind.SYMBOL, dimension_ok=False), finding(Kind.SIGN, dimension_ok=False)]
     two_terms = [finding(Kind.EXTRA, "+ q_1", None, dimension_ok=False)] * 2
-    assert [len(group) for group in by_term([*two_slips, *two_terms])] == [2, 1, 1]
-    assert totals([component(*two_slips, *two_terms)]).dimensionally_wrong == 3
+    wrong = component(*two_errors, *two_terms)
+    assert [len(group) for group in wrong.by_term] == [2, 1, 1]
+    assert of(textbook, wrong).totals.dimensionally_wrong == 3
 
 
-def test_no_wrong_dimension_is_no_sentence() -> None:
-    assert dimension_summary(totals([component(finding())])) == ""
-    assert dimension_summary(totals([component(finding(dimension_ok=False))])).startswith("1 printed term has")
+def test_no_wrong_dimension_is_no_sentence(textbook: Publication) -> None:
+    assert dimension_summary(of(textbook, component(finding())).totals) == ""
+    assert dimension_summary(of(textbook, component(finding(dimension_ok=False))).totals)
 
 
 # Evidence in words
@@ -114,19 +111,19 @@ def test_evidence_says_what_is_proven_and_no_more(textbook, made, told, untold) 
 
 
 @pytest.mark.parametrize("width", [80, 110, 200])
-def test_no_line_is_wider_than_the_terminal(of_the_paper: Audit, width: int) -> None:
+def test_no_line_is_wider_than_the_terminal(of_the_paper: AuditResult, width: int) -> None:
     summary = shown(show_audit, of_the_paper, width)
     lines = [line for line in summary.splitlines() if not line.startswith(("in full:", "errata sheet:"))]
     assert max(map(len, [*lines, *shown(show_equations, of_the_paper, width).splitlines()])) <= width
 
 
-def test_every_equation_and_verdict_is_in_the_table(of_the_paper: Audit) -> None:
+def test_every_equation_and_verdict_is_in_the_table(of_the_paper: AuditResult) -> None:
     lines = {line.split()[0]: line for line in shown(show_audit, of_the_paper).splitlines() if line.startswith(" (")}
     for one in of_the_paper.components:
         assert verdict_words(one) in lines[f"({one.equation})"]
 
 
-def test_details_show_every_finding_with_its_terms(of_the_paper: Audit) -> None:
+def test_details_show_every_finding_with_its_terms(of_the_paper: AuditResult) -> None:
     text = shown(show_equations, of_the_paper, 2000)
     for one in of_the_paper.components:
         for found in one.findings:
@@ -152,10 +149,10 @@ def test_a_publication_of_definitions_alone_has_an_empty_report(textbook: Public
 # JSON
 
 
-def test_json_says_the_whole_of_it(of_the_paper: Audit) -> None:
-    data = audit_data(of_the_paper)
+def test_json_says_the_whole_of_it(of_the_paper: AuditResult) -> None:
+    data = of_the_paper.to_dict()
     assert as_json(data)
-    assert data["verdict"] == "findings" and len(data["components"]) == len(of_the_paper.components)
+    assert data["schema"] == 1 and not data["passed"] and len(data["components"]) == len(of_the_paper.components)
     assert {c["unit"] for c in data["components"]} == {"m/s^2", "N", "N m"}
     for told, one in zip(data["components"], of_the_paper.components, strict=True):
         assert [(x["term"], x["changed"]) for x in told["corrected"]] == list(one.corrected)
@@ -168,7 +165,7 @@ def test_json_says_the_whole_of_it(of_the_paper: Audit) -> None:
 
 
 @pytest.mark.parametrize("form", WRITERS)
-def test_every_finding_is_on_the_sheet_and_every_change_is_marked(of_the_paper: Audit, form: str) -> None:
+def test_every_finding_is_on_the_sheet_and_every_change_is_marked(of_the_paper: AuditResult, form: str) -> None:
     text = errata(of_the_paper, form)
     for found in of_the_paper.findings:
         assert found.id in text
@@ -249,27 +246,27 @@ def assert_nested(text: str) -> Nesting:
     return parser
 
 
-def test_the_page_stands_by_itself(of_the_paper: Audit) -> None:
+def test_the_page_stands_by_itself(of_the_paper: AuditResult) -> None:
     text = errata(of_the_paper, "html")
     tags = assert_nested(text).tags
     assert "math" in tags and not tags & {"script", "link", "img", "iframe"}
     assert set(re.findall(r"https?://[^\"' )]+", text)) == {"http://www.w3.org/1998/Math/MathML"}
 
 
-def test_all_that_is_derived_in_the_paper_s_letters_can_be_set(of_the_paper: Audit) -> None:
+def test_all_that_is_derived_in_the_paper_s_letters_can_be_set(of_the_paper: AuditResult) -> None:
     terms = {term for one in of_the_paper.components for term, _ in one.corrected}
     terms |= {f.derived for f in of_the_paper.findings if f.derived}
     assert all(settable(term) for term in terms)
     assert all("<math" in mathml(term) for term in terms)
 
 
-def test_the_latex_is_balanced(of_the_paper: Audit) -> None:
+def test_the_latex_is_balanced(of_the_paper: AuditResult) -> None:
     assert_balanced(errata(of_the_paper, "latex"))
 
 
 @pytest.mark.tex
 @pytest.mark.parametrize("case", ["paper", "nasty", "long"])
-def test_the_latex_compiles(of_the_paper: Audit, textbook: Publication, case: str, tmp_path: Path) -> None:
+def test_the_latex_compiles(of_the_paper: AuditResult, textbook: Publication, case: str, tmp_path: Path) -> None:
     made = component(finding(printed=NASTY, derived=NASTY, note=NASTY), corrected=((NASTY, True),))
     if case == "long":
         long = " \\, ".join(["+ m_2", *[rf"\dot{{\theta}}_1^{k}" for k in range(2, 30)]])

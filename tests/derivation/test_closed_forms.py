@@ -8,11 +8,21 @@ import pytest
 
 import rttrr_pin
 from rttrr_pin.auditing.evidence import Witness
-from rttrr_pin.derivation.chain import SymbolicRobot, default_letters
-from rttrr_pin.derivation.derivation import ClosedForms, closed_forms
+from rttrr_pin.derivation.closed_forms import ClosedForms, closed_forms
 from rttrr_pin.derivation.latex import latex_number, latex_power, latex_product, latex_sum
 from rttrr_pin.derivation.ring import Ring
-from rttrr_pin.derivation.symbols import ACCELERATION, FORCE, LENGTH, MOMENT, Dimension, Role, Symbol, renamed
+from rttrr_pin.derivation.symbolic_robot import SymbolicRobot, default_symbols
+from rttrr_pin.derivation.symbols import (
+    ACCELERATION,
+    FORCE,
+    LENGTH,
+    MOMENT,
+    Dimension,
+    Role,
+    Symbol,
+    dimension_of,
+    renamed,
+)
 from rttrr_pin.exact.intervals import INTERVAL, precision
 from rttrr_pin.exact.intervals import interval as ball
 from support.tolerances import ROUNDING
@@ -25,7 +35,7 @@ VECTORS = {"vC": ACCELERATION, "F": FORCE, "N": MOMENT, "f": FORCE, "n": MOMENT}
 def in_letters(source: str) -> ClosedForms:
     model = rttrr_pin.load(source).model
     tool = len(model.links) - 1
-    return closed_forms(SymbolicRobot(model, default_letters(model, tool), tool))
+    return closed_forms(SymbolicRobot(model, default_symbols(model, tool), tool))
 
 
 def vectors(forms: ClosedForms, quantity: str):
@@ -45,7 +55,7 @@ def test_every_term_has_the_dimension_of_its_quantity(arm) -> None:
         for i, vector in enumerate(vectors(arm, quantity))
         for component in vector
         for factors in ring.terms(component)
-        if ring.dimension(factors) != dimension
+        if dimension_of(factors, ring.symbols) != dimension
     ]
     assert not wrong
 
@@ -80,9 +90,9 @@ def compare(forms: ClosedForms, witness: Witness) -> None:
             if quantity == "vC" and not model.links[i].mass:
                 continue
             components = [forms.tau[i]] if quantity == "tau" else list(vectors(forms, quantity)[i])
-            for axis, component in enumerate(components):
+            for axis, component in zip("xyz" if len(components) == 3 else ("",), components, strict=True):
                 closed = witness.enclosure(ring.terms(component))
-                recursive = witness.recursion(quantity, i, axis)
+                recursive = witness.recursion(f"{quantity}{i + 1}{axis}")
                 assert closed.overlaps(recursive), (quantity, i, axis)
                 assert float(closed.rad()) < 1e-50 * max(1.0, abs(float(closed.mid())))
 
@@ -90,7 +100,7 @@ def compare(forms: ClosedForms, witness: Witness) -> None:
 def test_pinocchio_says_the_same(arm) -> None:
     witness = Witness(arm.robot, 3)
     for i in range(arm.robot.model.nv):
-        here, there = witness.number(arm.robot.ring.terms(arm.tau[i])), witness.pinocchio("tau", i, 0)
+        here, there = witness.number(arm.robot.ring.terms(arm.tau[i])), witness.pinocchio(f"tau{i + 1}")
         assert abs(here - there) <= ROUNDING * max(1.0, abs(there)) * 10
 
 
@@ -99,7 +109,7 @@ def test_a_letter_for_another_is_told_by_the_balls() -> None:
     forms = in_letters("rttrr")
     witness = Witness(forms.robot, 0)
     wrong = renamed(forms.robot.ring.terms(forms.F[4].z), {"r_C5x": "r_C5z"})
-    assert not witness.enclosure(wrong).overlaps(witness.recursion("F", 4, 2))
+    assert not witness.enclosure(wrong).overlaps(witness.recursion("F5z"))
 
 
 def test_the_paper_s_arm_has_as_many_terms_as_the_paper_prints() -> None:
@@ -124,7 +134,7 @@ def test_a_ring_reduces_and_substitutes() -> None:
     assert ring.reduced(s**3 + s * c**2) == s
     assert ring.substituted(x * s, {"x": s}) == ring.reduced(s * s)
     assert ring.polynomial(ring.terms(2 * x * c - 3)) == 2 * x * c - 3
-    assert ring.dimension((("x", 2), ("c_1", 1))) == Dimension(length=2)
+    assert dimension_of((("x", 2), ("c_1", 1)), ring.symbols) == Dimension(length=2)
 
 
 def test_numbers_and_products_in_latex() -> None:

@@ -1,9 +1,9 @@
 """Claim: the auditor finds every planted misprint, names kind and term of 98 percent, and reports no clean copy.
 
-From the derived equations of the paper's 60 components: 1,000 copies of a component with one to three slips each, and
+From the derived equations of the paper's 60 components: 1,000 copies of a component with one to three errors each, and
 200 clean copies of all 60, each set in type at random: order, spelling, spaces, brackets, line breaks, c^2 or s^2.
 
-Run: python -m tests.fuzz.misprint_campaign [--cases N] [--clean N] [--seed S] [--save]. Exit 1 if a slip is not found, if
+Run: python -m tests.fuzz.misprint_campaign [--cases N] [--clean N] [--seed S] [--save]. Exit 1 if an error is missed, if
 less than 98 percent are named, or if a clean copy is reported.
 """
 
@@ -19,102 +19,98 @@ from multiprocessing import get_context
 
 import numpy as np
 
-from rttrr_pin.auditing import Kind, read_publication
-from rttrr_pin.auditing.audit import Auditor, Paired
-from rttrr_pin.auditing.publication import DEFINITION, Equation
-from rttrr_pin.derivation.symbols import Terms
+from rttrr_pin.auditing import Kind, Publication, read_publication
+from rttrr_pin.auditing.derived import Derived, derive
+from rttrr_pin.auditing.match import Matching, match_best
+from rttrr_pin.auditing.read import read_component
+from rttrr_pin.derivation.symbols import Expression, Term
 
-from .misprints import Misprint, Numeral, Printer, Typesetter
+from .misprints import Misprint, Printer, Typesetter
 
 WANTED = 0.98
 
 
 @cache
-def auditor() -> Auditor:
-    """One for each process: the derivation is the same for all cases."""
-    return Auditor(read_publication(), seed=0)
+def publication() -> Publication:
+    """One for each process."""
+    return read_publication()
+
+
+@cache
+def derived() -> tuple[Derived, ...]:
+    """The derivation, which is the same for all cases."""
+    return derive(publication())
 
 
 @dataclass(frozen=True)
 class Target:
-    """A component, with what is right for it and what is printed elsewhere for the same quantity."""
+    """A component, with its right terms and with terms that are printed elsewhere for the same quantity."""
 
-    equation: Equation
-    terms: Terms
-    foreign: list[Numeral]
+    name: str
+    terms: Expression
+    foreign: list[Term]
 
 
 @cache
 def targets() -> list[Target]:
     """The paper's components."""
-    judge = auditor()
-    found: list[tuple[Equation, Terms]] = []
-    for equation in judge.publication.equations:
-        for k, axis in enumerate(equation.components if equation.quantity != DEFINITION else ""):
-            one = Equation(equation.number, equation.quantity, equation.place, axis, ())
-            found.append((one, judge.robot.ring.terms(judge.derived(equation, k))))
+    expressions = derived()[0].expressions
     return [
         Target(
-            one,
+            name,
             terms,
             [
                 (x, f)
-                for other, theirs in found
-                if other.quantity == one.quantity
-                for f, x in theirs.items()
+                for other, others in expressions.items()
+                if other.rstrip("xyz0123456789") == name.rstrip("xyz0123456789")
+                for f, x in others.items()
                 if f not in terms
             ],
         )
-        for one, terms in found
+        for name, terms in expressions.items()
     ]
 
 
-def read(target: Target, text: str) -> Paired:
-    """A component as set in type, paired by the auditor."""
-    judge = auditor()
-    equation = Equation(
-        target.equation.number, target.equation.quantity, target.equation.place, target.equation.components, (text,)
-    )
-    splits = judge.publication.read(equation)
-    assert len(splits) == 1
-    return judge.paired(equation, splits[0], {})[0]
+def read(target: Target, text: str) -> Matching:
+    """A component as set in type, read and matched."""
+    return match_best(read_component(publication(), text), target.name, derived(), publication().aliases)
 
 
 def case(seed: int) -> tuple[list[tuple[str, bool]], bool, str]:
-    """One copy with slips: each planted kind and whether it was named, whether anything was found, and the text."""
+    """One copy with errors: each planted kind and whether it was named, whether anything was found, and the text."""
     rng = np.random.default_rng(seed)
     target = targets()[int(rng.integers(len(targets())))]
-    symbols = auditor().robot.ring.symbols
+    symbols = derived()[0].symbols
     printer = Printer(symbols, rng)
     right = [(x, f) for f, x in printer.sines(target.terms).items()]
     terms, planted = printer.misprinted(right, target.foreign, int(rng.integers(1, 4)))
     text = Typesetter(symbols, rng).component(terms)
-    paired = read(target, text)
+    matching = read(target, text)
     reported = [
-        Misprint(kind, None if pair.reading is None else (pair.reading.coefficient, pair.reading.factors), pair.derived)
-        for pair in paired.pairs
+        Misprint(kind, None if pair.reading is None else pair.reading.term, pair.derived)
+        for pair in matching.pairs
         for kind in pair.kinds
     ]
     named = []
-    for slip in planted:
-        known = slip in reported
+    for error in planted:
+        known = error in reported
         if known:
-            reported.remove(slip)
-        named.append((str(slip.kind), known))
-    return named, any(pair.kinds for pair in paired.pairs), text
+            reported.remove(error)
+        named.append((str(error.kind), known))
+    return named, any(pair.kinds for pair in matching.pairs), text
 
 
 def clean(seed: int) -> list[str]:
     """One clean copy of all components: those that were reported, with their text."""
     rng = np.random.default_rng([seed, 1])
-    symbols = auditor().robot.ring.symbols
+    symbols = derived()[0].symbols
     reported = []
     for target in targets():
         right = [(x, f) for f, x in Printer(symbols, rng).sines(target.terms).items()]
         text = Typesetter(symbols, rng).component(right)
-        paired = read(target, text)
-        if paired.component.unparsed or any(pair.kinds for pair in paired.pairs):
-            reported.append(f"{target.equation.names[0]}: {paired.component.unparsed} {text}")
+        matching = read(target, text)
+        if matching.component.printed.unparsed or any(pair.kinds for pair in matching.pairs):
+            reported.append(f"{target.name}: {matching.component.printed.unparsed} {text}")
     return reported
 
 
@@ -130,15 +126,15 @@ def main() -> int:
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
         cases = list(pool.map(case, range(chosen.seed, chosen.seed + chosen.cases), chunksize=20))
         copies = list(pool.map(clean, range(chosen.seed, chosen.seed + chosen.clean), chunksize=2))
-    slips = [slip for named, _, _ in cases for slip in named]
-    planted = Counter(kind for kind, _ in slips)
-    known = Counter(kind for kind, right in slips if right)
+    errors = [error for named, _, _ in cases for error in named]
+    planted = Counter(kind for kind, _ in errors)
+    known = Counter(kind for kind, right in errors if right)
     missed = [text for _, found, text in cases if not found]
     reported = [text for copy in copies for text in copy]
-    share = sum(known.values()) / len(slips)
+    share = sum(known.values()) / len(errors)
     figures = {
-        "copies_with_slips": len(cases),
-        "slips": len(slips),
+        "copies_with_errors": len(cases),
+        "errors": len(errors),
         "copies_not_reported": missed[:10],
         "named_with_kind_and_term": round(share, 4),
         "by_kind": {kind: f"{known[kind]} of {planted[kind]}" for kind in map(str, Kind)},

@@ -1,4 +1,4 @@
-"""Misprints: correct equations set in type in many ways, with slips of every kind planted in them."""
+"""Misprints: correct equations set in type in many ways, with errors of every kind planted in them."""
 
 from __future__ import annotations
 
@@ -8,19 +8,17 @@ from fractions import Fraction
 
 import numpy as np
 
-from rttrr_pin.auditing.edits import DOTS, Kind
-from rttrr_pin.derivation.symbols import Factors, Role, Symbol, Terms, factors_of
-
-Numeral = tuple[Fraction, Factors]
+from rttrr_pin.auditing.differences import DOTS, Kind
+from rttrr_pin.derivation.symbols import Expression, Factors, Role, Symbol, Term, factors_of
 
 
 @dataclass(frozen=True)
 class Misprint:
-    """One planted slip: its kind, the term as it is printed (None: left out), the term that is right (None: added)."""
+    """One planted error: its kind, the printed term (None: left out), the term that is right (None: added)."""
 
     kind: Kind
-    printed: Numeral | None
-    derived: Numeral | None
+    printed: Term | None
+    derived: Term | None
 
 
 class Typesetter:
@@ -30,7 +28,7 @@ class Typesetter:
         self.symbols, self.rng = symbols, rng
         self.one_of = lambda options: options[int(rng.integers(len(options)))]
 
-    def component(self, terms: list[Numeral]) -> str:
+    def component(self, terms: list[Term]) -> str:
         """A right-hand side."""
         order = [terms[k] for k in self.rng.permutation(len(terms))]
         pieces: list[tuple[str, str]] = []  # sign and text
@@ -43,7 +41,7 @@ class Typesetter:
                 pieces.append(("-" if coefficient < 0 else "+", self.term(abs(coefficient), factors)))
         return self._lines(pieces)
 
-    def _group(self, order: list[Numeral]) -> tuple[str, str] | tuple[()]:
+    def _group(self, order: list[Term]) -> tuple[str, str] | tuple[()]:
         """Some of the terms with one factor in common, in brackets."""
         name = self.one_of([name for name, _ in order[0][1]]) if order[0][1] else ""
         members = [x for x in order if (name, 1) in x[1]][:4]
@@ -90,7 +88,7 @@ class Typesetter:
         return text
 
     def symbol(self, name: str, power: int) -> str:
-        """A letter to a power."""
+        """A symbol to a power."""
         symbol = self.symbols[name]
         if symbol.role in (Role.COSINE, Role.SINE):
             return self._trigonometric(name, power)
@@ -125,13 +123,13 @@ class Typesetter:
 
 
 class Printer:
-    """Plants slips into right terms."""
+    """Plants errors into right terms."""
 
     def __init__(self, symbols: Mapping[str, Symbol], rng: np.random.Generator) -> None:
         self.symbols, self.rng = symbols, rng
         self.one_of = lambda options: options[int(rng.integers(len(options)))]
 
-    def sines(self, terms: Terms) -> Terms:
+    def sines(self, terms: Expression) -> Expression:
         """The same sum, now and then with 1 - c^2 as s^2."""
         result = dict(terms)
         for factors, x in terms.items():
@@ -145,15 +143,13 @@ class Printer:
                     result[sine] = -x
         return result
 
-    def misprinted(
-        self, terms: list[Numeral], foreign: list[Numeral], count: int
-    ) -> tuple[list[Numeral], list[Misprint]]:
-        """The terms with slips in some of them, each in another term.
+    def misprinted(self, terms: list[Term], foreign: list[Term], count: int) -> tuple[list[Term], list[Misprint]]:
+        """The terms with errors in some of them, each in another term.
 
         Args:
             terms: the right ones.
             foreign: terms of other equations, to be added by mistake.
-            count: how many slips.
+            count: how many errors.
         """
         text = list(terms)
         planted: list[Misprint] = []
@@ -161,18 +157,18 @@ class Printer:
         while len(planted) < count and untouched:
             kind = self.one_of(tuple(Kind))
             term = untouched.pop(int(self.rng.integers(len(untouched))))
-            slip = self._slip(kind, term, foreign, terms)
-            if slip is None:
+            error = self._error(kind, term, foreign, terms)
+            if error is None:
                 untouched.append(term)
                 continue
-            if slip.derived is not None:
-                text.remove(slip.derived)
-            if slip.printed is not None:
-                text.append(slip.printed)
-            planted.append(slip)
+            if error.derived is not None:
+                text.remove(error.derived)
+            if error.printed is not None:
+                text.append(error.printed)
+            planted.append(error)
         return text, planted
 
-    def _slip(self, kind: Kind, term: Numeral, foreign: list[Numeral], terms: list[Numeral]) -> Misprint | None:
+    def _error(self, kind: Kind, term: Term, foreign: list[Term], terms: list[Term]) -> Misprint | None:
         coefficient, factors = term
         if kind is Kind.SIGN:
             return Misprint(kind, (-coefficient, factors), term)
@@ -186,7 +182,7 @@ class Printer:
         if kind is Kind.EXTRA:
             new = [x for x in foreign if x[1] not in {f for _, f in terms}]
             return Misprint(kind, self.one_of(new), None) if new else None
-        changed = self._rate(factors) if kind is Kind.RATE else self._letter(factors)
+        changed = self._rate(factors) if kind is Kind.RATE else self._symbol_error(factors)
         return None if changed is None else Misprint(kind, (coefficient, changed), term)
 
     def _rate(self, factors: Factors) -> Factors | None:
@@ -197,21 +193,21 @@ class Printer:
         k = self.symbols[name].index
         return self._exchanged(factors, name, [x for x in (f"q_{k}", f"v_{k}", f"a_{k}") if x != name])
 
-    def _letter(self, factors: Factors) -> Factors | None:
+    def _symbol_error(self, factors: Factors) -> Factors | None:
         name = self.one_of([name for name, _ in factors])
-        mine = self.symbols[name]
-        if mine.role in DOTS:
-            alike = [x.name for x in self.symbols.values() if x.role is mine.role and x.name != name]
+        own = self.symbols[name]
+        if own.role in DOTS:
+            alike = [x.name for x in self.symbols.values() if x.role is own.role and x.name != name]
         else:
             alike = [
                 x.name
                 for x in self.symbols.values()
-                if x.dimension == mine.dimension and x.name != name and x.role not in (*DOTS, Role.SIGN)
+                if x.dimension == own.dimension and x.name != name and x.role not in (*DOTS, Role.SIGN)
             ]
         return self._exchanged(factors, name, alike)
 
     def _exchanged(self, factors: Factors, name: str, others: list[str]) -> Factors | None:
-        """Another letter in place of one; not one that stands in the term already."""
+        """Another symbol in place of one; not one that stands in the term already."""
         free = [other for other in others if other not in dict(factors)]
         if not free:
             return None

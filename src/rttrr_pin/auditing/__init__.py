@@ -1,12 +1,11 @@
-"""Published equations: read, held term by term against the recursion, and set right."""
+"""Published equations: read, compared term by term with the recursion, and corrected."""
 
 from __future__ import annotations
 
-from rttrr_pin.auditing.audit import audit
-from rttrr_pin.auditing.edits import Kind
+from rttrr_pin.auditing.differences import Kind
 from rttrr_pin.auditing.file import read_publication
-from rttrr_pin.auditing.findings import Finding
+from rttrr_pin.auditing.pipeline import audit
 from rttrr_pin.auditing.publication import Publication
-from rttrr_pin.auditing.verdicts import Audit, ComponentAudit, Verdict
+from rttrr_pin.auditing.results import AuditResult, ComponentAudit, Finding, Verdict
 
-__all__ = ["Audit", "ComponentAudit", "Finding", "Kind", "Publication", "Verdict", "audit", "read_publication"]
+__all__ = ["AuditResult", "ComponentAudit", "Finding", "Kind", "Publication", "Verdict", "audit", "read_publication"]

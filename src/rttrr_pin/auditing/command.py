@@ -10,13 +10,12 @@ from typing import Annotated
 
 import typer
 
-from rttrr_pin.auditing import read_publication
-from rttrr_pin.auditing.audit import audit as run_audit
+from rttrr_pin.auditing import Publication, Verdict, read_publication
+from rttrr_pin.auditing import audit as run_audit
 from rttrr_pin.auditing.errata import errata
-from rttrr_pin.auditing.publication import Publication
-from rttrr_pin.auditing.report import audit_data, show_audit, show_equations
+from rttrr_pin.auditing.report import show_audit, show_equations
 from rttrr_pin.errors import InputError
-from rttrr_pin.reporting.output import AGREE, DISAGREE, Output, progress, write_json, write_text
+from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json, write_text
 
 
 def audit(
@@ -27,15 +26,15 @@ def audit(
         list[str] | None, typer.Option(help="Only the equation of this number, in full; repeatable.")
     ] = None,
     seed: Annotated[int, typer.Option(help="Of the random state at which numbers are compared.", min=0)] = 0,
-    json: Annotated[str | None, typer.Option(help="Write the outcome as JSON to this file; '-' is stdout.")] = None,
+    json: Annotated[str | None, typer.Option(help="Write the result as JSON to this file; '-' is stdout.")] = None,
     latex: Annotated[str | None, typer.Option(help="Write an errata sheet as LaTeX; '-' is stdout.")] = None,
     html: Annotated[str | None, typer.Option(help="Write an errata sheet as one HTML page; '-' is stdout.")] = None,
     markdown: Annotated[str | None, typer.Option(help="Write an errata sheet as Markdown; '-' is stdout.")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
 ) -> int:
-    """Hold published equations of motion against the Newton-Euler recursion, term by term.
+    """Compare published equations of motion with the Newton-Euler recursion, term by term.
 
-    Exit code: 0 all right, 1 findings, 2 unusable input.
+    Exit code: 0 all right, 1 findings or unreadable equations, 2 unusable input, such as undeclared symbols alone.
     """
     sheets = {"latex": latex, "html": html, "markdown": markdown}
     targets = {f"--{form}": target for form, target in ({"json": json} | sheets).items() if target is not None}
@@ -45,7 +44,7 @@ def audit(
         publication = _only(publication, equation)
     with progress(len(publication.equations), quiet, "equations") as advance:
         result = run_audit(publication, seed, advance)
-    write_json(json, lambda: audit_data(result))
+    write_json(json, result.to_dict)
     for form, target in sheets.items():
         write_text(target, partial(errata, result, form))
     console = Output(quiet=quiet or "-" in targets.values(), soft_wrap=False, highlight=False)
@@ -53,7 +52,10 @@ def audit(
         show_equations(result, console)
     else:
         show_audit(result, console, "" if file is None else str(file))
-    return AGREE if result.all_right else DISAGREE
+    if result.passed:
+        return AGREE
+    only_undeclared = not result.count(Verdict.DIFFERS) and not result.count(Verdict.UNPARSED)
+    return UNUSABLE if only_undeclared else DISAGREE
 
 
 def _refuse_shared(targets: Mapping[str, str]) -> None:

@@ -2,26 +2,30 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from os import PathLike
 from pathlib import Path
 
-from rttrr_pin.auditing.arm import read_robot
-from rttrr_pin.auditing.match import as_terms
 from rttrr_pin.auditing.publication import DEFINITION, Convention, Equation, Publication
-from rttrr_pin.auditing.reading.python import read_python
-from rttrr_pin.auditing.tables import Table, read_table
-from rttrr_pin.auditing.templates import filled, letters_in
-from rttrr_pin.derivation.chain import SymbolicRobot
-from rttrr_pin.derivation.symbols import Symbol, Terms
+from rttrr_pin.core.model import Model
+from rttrr_pin.derivation.symbol_file import PUBLISHED, SYMBOL_KEYS, read_symbols, spell
+from rttrr_pin.derivation.tables import Table, read_table
+from rttrr_pin.derivation.templates import filled
 from rttrr_pin.errors import InputError
 
-DATA = Path(__file__).parent / "data"
-RTTRR = DATA / "rttrr_2016_conventions.toml"
+RTTRR = Path(__file__).parent / "data/rttrr_2016_conventions.toml"
 """The paper that this package starts from."""
 
 FILE_KEYS = (
-    *("title", "source", "language", "equations", "robot", "payload", "link", "symbol", "coordinates", "values"),
-    *("equation", "convention"),
+    "title",
+    "source",
+    "language",
+    "symbols",
+    "equations",
+    *SYMBOL_KEYS,
+    "coordinates",
+    "equation",
+    "convention",
 )
 EQUATION_KEYS = ("number", "line", "quantity", "link", "joint", "components", "latex", "python")
 
@@ -35,113 +39,83 @@ COORDINATES: Mapping[str, tuple[str, str, str]] = {
 """How coordinates, rates and accelerations are spelled unless [coordinates] says otherwise."""
 
 
-def read_publication(path: Path = RTTRR) -> Publication:
+def read_publication(path: str | PathLike[str] = RTTRR) -> Publication:
     """A file of equations, TOML or YAML, with its robot, symbols and conventions.
 
     Args:
         path: the file; without one, the paper on RTTRR.
 
-    Returns:
-        The publication.
-
     Raises:
-        EquationError: the file cannot be used; it says where and why.
+        EquationError: the file cannot be used; the message names the place and the reason.
         UrdfError: its URDF cannot be used.
     """
+    path = Path(path)
     file = read_table(path).only(FILE_KEYS)
     language = file.get("language", str, "latex")
     if language not in COORDINATES:
         raise file.error(f"language is {language!r}: expected {' or '.join(COORDINATES)}")
-    links = sum("mass" in link.entries for link in file.tables("link"))
-    symbols: dict[str, Symbol] = {}
-    spellings: dict[str, str] = {}
-    twins: dict[str, str] = {}
-    for table in file.tables("symbol", "[[symbol]]"):
-        for letter in letters_in(table, links, language == "latex"):
-            name = letter.symbol.name
-            if name in symbols:
-                raise table.error(f"symbol {name!r} is declared twice: leave one")
-            symbols[name] = letter.symbol
-            _spell(spellings, letter.spellings, name, table)
-            if letter.equal:
-                twins[name] = letter.equal
-    strangers = [name for name in twins.values() if name not in symbols or name in twins]
-    if strangers:
-        raise file.error(f"a symbol is said to be equal to {strangers[0]!r}: expected the name of another symbol")
-    letters = [symbol for name, symbol in symbols.items() if name not in twins]
-    robot = read_robot(file, letters, _expression(symbols), _finder(path))
-    _spell_motion(spellings, file, robot, language)
-    found = Publication(
+    latex = language == "latex"
+    symbols = read_symbols(*_symbol_file(file, path), latex)
+    spellings = dict(symbols.spellings)
+    _spell_motion(spellings, file, symbols.robot.model, language)
+    publication = Publication(
         title=file.get("title", str, path.stem),
         source=file.get("source", str, path.name),
         language=language,
-        robot=robot,
+        robot=symbols.robot,
         spellings=spellings,
-        twins=twins,
-        equations=tuple(_equations(file, path, robot, language)),
-        conventions=tuple(_conventions(file, symbols)),
+        aliases=symbols.aliases,
+        equations=tuple(_equations(file, path, symbols.robot.model, language)),
+        conventions=tuple(_conventions(file, set(spellings.values()))),
     )
     try:
-        if language == "latex":
-            found.vocabulary  # noqa: B018 - said now, with the file's name, and not in the middle of an audit
+        if latex:
+            publication.vocabulary  # noqa: B018 - said now, with the file's name, and not in the middle of an audit
     except InputError as error:
         raise file.error(str(error)) from error
-    return found
+    return publication
 
 
-def _spell(spellings: dict[str, str], printed: Iterable[str], name: str, table: Table) -> None:
-    """Add spellings of a symbol; one that another symbol has would silently be read as either."""
-    for spelling in printed:
-        other = spellings.setdefault(spelling, name)
-        if other != name:
-            raise table.error(f"{spelling!r} is to be {name!r}, and is {other!r} already: spell them differently")
+def _symbol_file(file: Table, path: Path) -> tuple[Table, Path]:
+    """The tables of symbols: the file's own, those of a file beside it, or those of a bundled robot."""
+    name = file.get("symbols", str, "")
+    if not name:
+        return file, path
+    own = [key for key in SYMBOL_KEYS if key in file.entries]
+    if own:
+        raise file.error(f"has [{own[0]}] beside symbols = {name!r}: leave one")
+    beside = path.parent / name
+    target = beside if beside.is_file() else PUBLISHED / f"{name}.toml"
+    if not target.is_file():
+        known = ", ".join(sorted(x.stem for x in PUBLISHED.glob("*.toml")))
+        raise file.error(f"symbols is {name!r}: expected a file beside this one, or one of {known}")
+    return read_table(target).only(FILE_KEYS), target
 
 
-def _expression(symbols: Mapping[str, Symbol]) -> Callable[[Table, str], Terms]:
-    """Reads expressions in the letters, such as `-J_1xy` or `l_1/2`."""
-    names = {name: name for name in symbols}
-
-    def read(table: Table, text: str) -> Terms:
-        component = read_python(text, names)
-        if component.unparsed:
-            raise table.error(f"{text!r} cannot be read: {component.unparsed}")
-        readings = [term.readings[0] for term in component.terms]
-        unknown = [name for reading in readings for name in reading.unknown]
-        if unknown:
-            raise table.error(f"{text!r} has {unknown[0]!r}, which is no symbol: declare it in [[symbol]]")
-        return as_terms((reading.coefficient, reading.factors) for reading in readings)
-
-    return read
-
-
-def _finder(path: Path) -> Callable[[str], str]:
-    """A URDF is looked for beside the file first; otherwise the name is what `load` takes."""
-
-    def find(name: str) -> str:
-        beside = path.parent / name
-        return str(beside) if beside.is_file() else name
-
-    return find
-
-
-def _spell_motion(spellings: dict[str, str], file: Table, robot: SymbolicRobot, language: str) -> None:
-    """Add the spellings of coordinates, rates and accelerations."""
+def _spell_motion(spellings: dict[str, str], file: Table, model: Model, language: str) -> None:
+    """Add the spellings of coordinates, rates and accelerations: by a template with <k>, or one for each."""
     table = file.table("coordinates").only(("position", "velocity", "acceleration"))
-    usual = COORDINATES[language]
-    for key, letter, default, count in zip(
-        ("position", "velocity", "acceleration"),
-        "qva",
-        usual,
-        (robot.model.nq, robot.model.nv, robot.model.nv),
-        strict=True,
+    counts = (model.nq, model.nv, model.nv)
+    for key, name, usual, count in zip(
+        ("position", "velocity", "acceleration"), "qva", COORDINATES[language], counts, strict=True
     ):
-        for template in table.texts(key, default=[default]):
-            for k in range(1, count + 1):
-                printed = filled(template, {"k": str(k)}, latex=language == "latex")
-                _spell(spellings, [printed], f"{letter}_{k}", table)
+        texts = table.texts(key, default=[usual])
+        templates = [text for text in texts if "<k>" in text]
+        single = [text for text in texts if "<k>" not in text]
+        if single and len(single) != count:
+            raise table.error(
+                f"{key} has {len(single)} spellings without <k> for {count} coordinates: "
+                "give one spelling with <k>, or one for each"
+            )
+        for k in range(1, count + 1):
+            printed = [
+                *single[k - 1 : k],
+                *(filled(text, {"k": str(k)}, latex=language == "latex") for text in templates),
+            ]
+            spell(spellings, printed, f"{name}_{k}", table)
 
 
-def _equations(file: Table, path: Path, robot: SymbolicRobot, language: str) -> list[Equation]:
+def _equations(file: Table, path: Path, model: Model, language: str) -> list[Equation]:
     """The equations, which may stand in a file of their own."""
     place = file.get("equations", str, "")
     tables = file.tables("equation", "equation")
@@ -149,17 +123,17 @@ def _equations(file: Table, path: Path, robot: SymbolicRobot, language: str) -> 
         tables += read_table(path.parent / place).only(("equation",)).tables("equation", "equation")
     if not tables:
         raise file.error("holds no [[equation]]: add one for each equation")
-    found = [_equation(table, robot, language) for table in tables]
+    equations = [_equation(table, model, language) for table in tables]
     names: dict[str, int | str] = {}
-    for table, equation in zip(tables, found, strict=True):
+    for table, equation in zip(tables, equations, strict=True):
         for name in equation.names:
             if name in names:
                 raise table.error(f"states {name}, as equation {names[name]} does: leave one")
             names[name] = equation.number
-    return found
+    return equations
 
 
-def _equation(table: Table, robot: SymbolicRobot, language: str) -> Equation:
+def _equation(table: Table, model: Model, language: str) -> Equation:
     table.only(EQUATION_KEYS)
     number = table.entries.get("number", table.place.removeprefix("equation "))
     if isinstance(number, bool) or not isinstance(number, int | str):
@@ -175,9 +149,9 @@ def _equation(table: Table, robot: SymbolicRobot, language: str) -> Equation:
             raise table.error(f"components is {axes!r}: expected xyz, or some of them")
         if len(texts) not in (1, len(axes)):
             raise table.error(f"has {len(texts)} texts for {len(axes)} components: give one for each, or one in all")
-        return Equation(number, quantity, _place(table, "link", robot.model.link_names), axes, texts, line)
+        return Equation(number, quantity, _place(table, "link", model.link_names), axes, texts, line)
     if quantity in SCALARS:
-        return Equation(number, quantity, _place(table, "joint", robot.model.v_names), "", texts, line)
+        return Equation(number, quantity, _place(table, "joint", model.v_names), "", texts, line)
     raise table.error(f"quantity is {quantity!r}: expected {', '.join((*VECTORS, *SCALARS))} or {DEFINITION}")
 
 
@@ -191,8 +165,8 @@ def _place(table: Table, key: str, names: Sequence[str]) -> int:
     raise table.error(f"{key} is {value!r}: expected 1 to {len(names)}, or one of {', '.join(names)}")
 
 
-def _conventions(file: Table, symbols: Mapping[str, Symbol]) -> list[Convention]:
-    found = []
+def _conventions(file: Table, symbols: set[str]) -> list[Convention]:
+    conventions = []
     for table in file.tables("convention", "[[convention]]"):
         table.only(("title", "text", "equations", "flip"))
         flip = table.texts("flip", default=())
@@ -200,5 +174,5 @@ def _conventions(file: Table, symbols: Mapping[str, Symbol]) -> list[Convention]
         if unknown:
             raise table.error(f"flip names {unknown[0]!r}, which is no symbol: use names of [[symbol]]")
         numbers = tuple(table.get("equations", list, []))
-        found.append(Convention(table.get("title", str), table.get("text", str), numbers, tuple(flip)))
-    return found
+        conventions.append(Convention(table.get("title", str), table.get("text", str), numbers, tuple(flip)))
+    return conventions

@@ -1,4 +1,4 @@
-"""Pairs the printed terms of one component with the derived ones, by the least total weight of slips.
+"""Stage 4: printed and derived terms -> pairs of them, by the least total weight of errors.
 
 Both sides are sums of products modulo c^2 + s^2 = 1. The assignment with the least total weight is found exactly
 (Hungarian method); a term without a partner is in excess, or missing.
@@ -8,27 +8,29 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import linear_sum_assignment
 
-from rttrr_pin.auditing.edits import LIMIT, REACH, WEIGHT, Kind, between_factors, between_numbers
-from rttrr_pin.auditing.printed import PrintedTerm, Reading
-from rttrr_pin.derivation.symbols import Factors, Symbol, Terms, renamed_factors
+from rttrr_pin.auditing.derived import Derived
+from rttrr_pin.auditing.differences import LIMIT, REACH, WEIGHT, Kind, between_factors, between_numbers
+from rttrr_pin.auditing.normalise import Normalised, equal, normalise
+from rttrr_pin.auditing.printed import PrintedComponent, PrintedTerm, Reading
+from rttrr_pin.derivation.symbols import Expression, Factors, Term, expression_of, renamed_factors
 
-Numeral = tuple[Fraction, Factors]
-"""A coefficient and the product that it multiplies."""
+Counts = NDArray[np.int64]
 
 DOUBT = 0.01
-"""The weight of a reading that is not the most literal one, and of a letter for another that is equal to it."""
+"""The weight of a reading that is not the most literal one, and of a symbol for another that is equal to it."""
 
 LATER = 1e-6
 """How much less a copy weighs for each place that it stands behind the first."""
 
 CROWD = 0.1
-"""The weight that a second slip in the same term adds to its own: slips fall on different terms more often."""
+"""The weight that a second error in the same term adds to its own: errors fall on different terms more often."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,57 +42,81 @@ class Pair:
         reading: how the printed term was read; None where it is missing.
         derived: what is right; None where the printed term is in excess.
         kinds: what went wrong; empty where it matches.
-        weight: of the slips.
+        weight: of the errors.
     """
 
     place: int | None
     reading: Reading | None
-    derived: Numeral | None
+    derived: Term | None
     kinds: tuple[Kind, ...]
     weight: float
 
 
 @dataclass(frozen=True)
-class Problem:
-    """What is to be paired.
+class Matching:
+    """One component as printed, paired with what is derived.
 
     Attributes:
-        printed: the terms as printed.
-        symbols: what the names stand for.
-        twins: letters that are equal to others.
+        component: both, in the same form.
+        pairs: one for each printed term in order, then one for each derived term that is missing.
     """
 
-    printed: Sequence[PrintedTerm]
-    symbols: Mapping[str, Symbol]
-    twins: Mapping[str, str]
+    component: Normalised
+    pairs: Sequence[Pair]
+
+    @property
+    def weight(self) -> float:
+        """Of all errors; a component that cannot be read weighs more than any that can."""
+        return 1e6 if self.component.printed.unparsed else _weight(self.pairs)
+
+    @property
+    def printed(self) -> Expression:
+        """The printed sum, by the readings that were taken."""
+        return expression_of(pair.reading.term for pair in self.pairs if pair.reading)
 
 
-def match(
-    printed: Sequence[PrintedTerm],
-    derived: Terms,
-    symbols: Mapping[str, Symbol],
-    twins: Mapping[str, str] | None = None,
-) -> list[Pair]:
+def match_best(
+    printed: PrintedComponent, name: str, derived: Sequence[Derived], aliases: Mapping[str, str]
+) -> Matching:
+    """Pair a printed component with what is derived, in the symbols that leave the least to explain.
+
+    Args:
+        printed: the component as read.
+        name: of the component.
+        derived: what is right, in the robot's symbols and perhaps with equal symbols kept apart.
+        aliases: symbols that are equal to others.
+    """
+    merged = replace(printed, terms=tuple(term.renamed(aliases) for term in printed.terms)) if aliases else printed
+    ways = [
+        match(normalise(component, name, one), aliases)
+        for component, one in zip((merged, printed), derived, strict=False)
+    ]
+    best = min(ways, key=lambda way: way.weight)
+    if printed.unparsed or not any(pair.kinds for pair in best.pairs):
+        return best
+    if not equal(best.printed, derived[0].expressions[name], best.component.symbols, aliases):
+        return best
+    right = [replace(pair, kinds=(), weight=0.0) for pair in best.pairs if pair.place is not None]
+    return replace(best, pairs=right)
+
+
+def match(component: Normalised, aliases: Mapping[str, str]) -> Matching:
     """The pairing with the least total weight.
 
     Args:
-        printed: the terms as printed.
-        derived: the right-hand side that is right, in the form of c^2 and s^2 that the text chose.
-        symbols: what the names stand for.
-        twins: letters that are equal to others: one for the other is no slip.
-
-    Returns:
-        A pair for each printed term in order, then one for each derived term that is missing.
+        component: printed terms, and derived ones in the form that the text chose.
+        aliases: symbols that are equal to others: one for the other is no error.
     """
-    problem = Problem(printed, symbols, twins or {})
-    settled, rest, owed = _added_up(printed, derived)
-    best = _assign(problem, rest, owed, settled)
+    printed = component.printed.terms
+    settled, rest, owed = _added_up(printed, component.derived)
+    best = _assign(component, aliases, rest, owed, settled)
     for factors in _partly_printed(best):
-        other = _assign(problem, *_paid(printed, rest, owed, settled, factors))
+        split = _paid(printed, rest, owed, settled, factors)
+        other = _assign(component, aliases, *split)
         if _weight(other) < _weight(best):
             best = other
-            rest, owed, settled = _paid(printed, rest, owed, settled, factors)
-    return sorted(best, key=lambda pair: (pair.place is None, pair.place or 0))
+            rest, owed, settled = split
+    return Matching(component, sorted(best, key=lambda pair: (pair.place is None, pair.place or 0)))
 
 
 def _weight(pairs: Iterable[Pair]) -> float:
@@ -98,11 +124,11 @@ def _weight(pairs: Iterable[Pair]) -> float:
 
 
 def _matching(place: int, reading: Reading) -> Pair:
-    return Pair(place, reading, (reading.coefficient, reading.factors), (), 0.0)
+    return Pair(place, reading, reading.term, (), 0.0)
 
 
-def _added_up(printed: Sequence[PrintedTerm], derived: Terms) -> tuple[list[Pair], list[int], list[Numeral]]:
-    """Terms with one product that add up to its coefficient; the places that are left; the derived terms left."""
+def _added_up(printed: Sequence[PrintedTerm], derived: Expression) -> tuple[list[Pair], list[int], list[Term]]:
+    """Expression with one product that add up to its coefficient; the places that are left; the derived terms left."""
     owed = dict(derived)
     by_factors: dict[Factors, list[int]] = {}
     for place, term in enumerate(printed):
@@ -132,8 +158,8 @@ def _partly_printed(pairs: Iterable[Pair]) -> list[Factors]:
 
 
 def _paid(
-    printed: Sequence[PrintedTerm], rest: list[int], owed: list[Numeral], settled: list[Pair], factors: Factors
-) -> tuple[list[int], list[Numeral], list[Pair]]:
+    printed: Sequence[PrintedTerm], rest: list[int], owed: list[Term], settled: list[Pair], factors: Factors
+) -> tuple[list[int], list[Term], list[Pair]]:
     """The same with the printed part of one coefficient taken as right, and the other part still owed."""
     part = [place for place in rest if printed[place].readings[0].factors == factors]
     paid = sum((printed[place].readings[0].coefficient for place in part), Fraction(0))
@@ -142,11 +168,17 @@ def _paid(
     return [place for place in rest if place not in part], still, [*settled, *matching]
 
 
-def _assign(problem: Problem, rest: Sequence[int], owed: Sequence[Numeral], settled: Sequence[Pair]) -> list[Pair]:
+def _assign(
+    component: Normalised,
+    aliases: Mapping[str, str],
+    rest: Sequence[int],
+    owed: Sequence[Term],
+    settled: Sequence[Pair],
+) -> list[Pair]:
     """The least assignment of what is left, beside the pairs that are settled."""
     n, m = len(rest), len(owed)
-    candidates = _candidates(problem, rest, owed)
-    unpaired = _unpaired(problem.printed, rest, {*owed, *(pair.derived for pair in settled if pair.derived)})
+    candidates = _candidates(component, aliases, rest, owed)
+    unpaired = _unpaired(component.printed.terms, rest, {*owed, *(pair.derived for pair in settled if pair.derived)})
     cost = np.full((n + m, n + m), LIMIT * (n + m + 1))
     cost[n:, m:] = 0.0
     for (i, j), candidate in candidates.items():
@@ -164,65 +196,53 @@ def _assign(problem: Problem, rest: Sequence[int], owed: Sequence[Numeral], sett
     return [*settled, *chosen]
 
 
-def _candidates(problem: Problem, rest: Sequence[int], owed: Sequence[Numeral]) -> dict[tuple[int, int], Pair]:
+def _candidates(
+    component: Normalised, aliases: Mapping[str, str], rest: Sequence[int], owed: Sequence[Term]
+) -> dict[tuple[int, int], Pair]:
     """Every pair of a printed and a derived term that have enough in common."""
     readings = [
-        (i, k, reading) for i, place in enumerate(rest) for k, reading in enumerate(problem.printed[place].readings)
+        (i, k, reading)
+        for i, place in enumerate(rest)
+        for k, reading in enumerate(component.printed.terms[place].readings)
     ]
-    mine = [renamed_factors(reading.factors, problem.twins) for _, _, reading in readings]
-    theirs = [renamed_factors(factors, problem.twins) for _, factors in owed]
-    found: dict[tuple[int, int], Pair] = {}
-    for row, j in zip(*np.nonzero(_distances(mine, theirs) <= REACH), strict=True):
+    printed = [renamed_factors(reading.factors, aliases) for _, _, reading in readings]
+    derived = [renamed_factors(factors, aliases) for _, factors in owed]
+    candidates: dict[tuple[int, int], Pair] = {}
+    for row, j in zip(*np.nonzero(_distances(printed, derived) <= REACH), strict=True):
         i, k, reading = readings[row]
-        slips = between_factors(mine[row], theirs[j], problem.symbols)
-        if slips is None:
+        errors = between_factors(printed[row], derived[j], component.symbols)
+        if errors is None:
             continue
         kinds, weight = between_numbers(reading.coefficient, owed[j][0])
-        kinds = (*slips[0], *kinds)
-        weight += slips[1] + DOUBT * (k + (reading.factors != owed[j][1])) + CROWD * max(0, len(kinds) - 1)
-        if weight < LIMIT and ((i, j) not in found or weight < found[i, j].weight):
-            found[i, j] = Pair(rest[i], reading, owed[j], kinds, weight)
-    return found
+        kinds = (*errors[0], *kinds)
+        weight += errors[1] + DOUBT * (k + (reading.factors != owed[j][1])) + CROWD * max(0, len(kinds) - 1)
+        if weight < LIMIT and ((i, j) not in candidates or weight < candidates[i, j].weight):
+            candidates[i, j] = Pair(rest[i], reading, owed[j], kinds, weight)
+    return candidates
 
 
-def _distances(mine: Sequence[Factors], theirs: Sequence[Factors]) -> np.ndarray[tuple[int, ...], np.dtype[np.int64]]:
+def _distances(printed: Sequence[Factors], derived: Sequence[Factors]) -> Counts:
     """How many factors differ, for each pair of products."""
-    columns = {name: k for k, name in enumerate(dict.fromkeys(name for x in (*mine, *theirs) for name, _ in x))}
+    columns = {name: k for k, name in enumerate(dict.fromkeys(name for x in (*printed, *derived) for name, _ in x))}
 
-    def table(products: Sequence[Factors]) -> np.ndarray[tuple[int, ...], np.dtype[np.int64]]:
+    def table(products: Sequence[Factors]) -> Counts:
         powers = np.zeros((len(products), len(columns)), dtype=np.int64)
         for row, factors in enumerate(products):
             for name, power in factors:
                 powers[row, columns[name]] = power
         return powers
 
-    distances: np.ndarray[tuple[int, ...], np.dtype[np.int64]] = np.abs(table(mine)[:, None] - table(theirs)).sum(
-        axis=2
-    )
+    distances: Counts = np.abs(table(printed)[:, None] - table(derived)).sum(axis=2)
     return distances
 
 
-def _unpaired(printed: Sequence[PrintedTerm], rest: Sequence[int], right: set[Numeral]) -> list[Pair]:
+def _unpaired(printed: Sequence[PrintedTerm], rest: Sequence[int], right: set[Term]) -> list[Pair]:
     """Each printed term as one that nothing derived corresponds to: printed twice, or in excess."""
-    copies = Counter((term.readings[0].coefficient, term.readings[0].factors) for term in printed)
+    copies = Counter(term.literal for term in printed)
     pairs = []
     for place in rest:
         reading = printed[place].readings[0]
-        numeral = (reading.coefficient, reading.factors)
-        kind = Kind.DUPLICATE if copies[numeral] > 1 and numeral in right else Kind.EXTRA
+        kind = Kind.DUPLICATE if copies[reading.term] > 1 and reading.term in right else Kind.EXTRA
         later = LATER * place if kind is Kind.DUPLICATE else 0.0  # of two copies, the second is one too many
         pairs.append(Pair(place, reading, None, (kind,), WEIGHT[kind] - later))
     return pairs
-
-
-def corrected(pairs: Sequence[Pair]) -> list[tuple[Numeral, bool]]:
-    """The terms as they should be printed, in printed order, and whether each was changed."""
-    return [(pair.derived, bool(pair.kinds)) for pair in pairs if pair.derived is not None]
-
-
-def as_terms(numerals: Iterable[Numeral]) -> Terms:
-    """A sum of terms as a polynomial."""
-    total: Terms = {}
-    for coefficient, factors in numerals:
-        total[factors] = total.get(factors, Fraction(0)) + coefficient
-    return {factors: coefficient for factors, coefficient in total.items() if coefficient}

@@ -1,21 +1,22 @@
-"""An equation as its text has it: terms, each with its readings where the text leaves room for more than one."""
+"""The value of the read stage: an equation as its text has it, each term with every reading that is left open."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
-from rttrr_pin.derivation.symbols import Factors
+from rttrr_pin.derivation.symbols import Factors, Term, renamed_factors
 
 
 @dataclass(frozen=True, slots=True)
 class Reading:
-    """What a printed term may say: a coefficient times a product of symbols.
+    """One reading of a printed term: a coefficient times a product of symbols.
 
     Attributes:
         coefficient: with its sign.
         factors: names of symbols with their exponents; s^2 stays s^2.
-        note: what had to be decided to read it so, in words; empty where nothing had to be.
+        note: what had to be decided to read it so; empty where nothing had to be.
         unknown: spellings in the term that the table of symbols does not have, as printed.
     """
 
@@ -23,6 +24,11 @@ class Reading:
     factors: Factors
     note: str = ""
     unknown: tuple[str, ...] = ()
+
+    @property
+    def term(self) -> Term:
+        """Coefficient and product."""
+        return self.coefficient, self.factors
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +43,16 @@ class PrintedTerm:
     text: str
     readings: tuple[Reading, ...]
 
+    @property
+    def literal(self) -> Term:
+        """The term by its most literal reading."""
+        return self.readings[0].term
+
+    def renamed(self, names: Mapping[str, str]) -> PrintedTerm:
+        """The same term with other symbols in place of some."""
+        readings = (replace(x, factors=renamed_factors(x.factors, names)) for x in self.readings)
+        return replace(self, readings=tuple(readings))
+
 
 @dataclass(frozen=True, slots=True)
 class PrintedComponent:
@@ -46,13 +62,11 @@ class PrintedComponent:
         text: as printed.
         terms: its terms in printed order; empty where it could not be read.
         unparsed: why it could not be read, with the place; empty where it could.
-        spellings: names of symbols, each with the spelling that it has where it is printed first.
     """
 
     text: str
     terms: tuple[PrintedTerm, ...]
     unparsed: str = ""
-    spellings: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

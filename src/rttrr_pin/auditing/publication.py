@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
-from rttrr_pin.auditing.printed import Split
-from rttrr_pin.auditing.reading.latex import read_latex
-from rttrr_pin.auditing.reading.python import read_python
 from rttrr_pin.auditing.reading.vocabulary import Vocabulary
-from rttrr_pin.derivation.chain import Letters, SymbolicRobot
-from rttrr_pin.derivation.symbols import renamed
+from rttrr_pin.derivation.symbolic_robot import SymbolicRobot
+from rttrr_pin.derivation.symbols import ACCELERATION, FORCE, MOMENT, Dimension
 
 DEFINITION = "definition"
-"""The quantity of an equation that only says what letters mean."""
+"""The quantity of an equation that only defines symbols."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +41,11 @@ class Equation:
             return []
         return [f"{self.quantity}{self.place + 1}{axis}" for axis in self.components or ("",)]
 
+    @property
+    def axes(self) -> list[int]:
+        """The axis of each component, from 0."""
+        return ["xyz".index(axis) for axis in self.components] or [0]
+
 
 @dataclass(frozen=True, slots=True)
 class Convention:
@@ -53,7 +55,7 @@ class Convention:
         title: what it is about.
         text: how it is read.
         equations: the numbers of the equations that it concerns.
-        flip: letters that have the other sign in the other way to read it; empty where there is no other way to try.
+        flip: symbols that have the other sign in the other way to read it; empty where there is no other way to try.
     """
 
     title: str
@@ -70,9 +72,9 @@ class Publication:
         title: of the publication.
         source: where it was published.
         language: "latex" or "python".
-        robot: the robot in its letters.
+        robot: the robot in its symbols.
         spellings: the name of the symbol that each spelling stands for.
-        twins: letters that are kept apart from one that they are equal to, as J_yx is from J_xy.
+        aliases: symbols that are kept apart from one that they are equal to, as J_yx is from J_xy.
         equations: as printed, in order.
         conventions: what the text leaves to the reader.
     """
@@ -82,61 +84,18 @@ class Publication:
     language: str
     robot: SymbolicRobot
     spellings: Mapping[str, str]
-    twins: Mapping[str, str]
+    aliases: Mapping[str, str]
     equations: tuple[Equation, ...]
     conventions: tuple[Convention, ...]
-
-    @cached_property
-    def apart(self) -> SymbolicRobot | None:
-        """The robot with the letters below the diagonal of its tensors kept apart; None where the text does not."""
-        if not self.twins:
-            return None
-        letters = self.robot.letters
-        other = {main: twin for twin, main in self.twins.items()}
-        slots = dict(letters.slots)
-        for slot, terms in letters.slots.items():
-            if slot[0] == "inertia" and str(slot[2]) > str(slot[3]):
-                slots[slot] = renamed(terms, other)
-        named = {symbol.name: symbol for symbol in letters.symbols}
-        new = [replace(named[main], name=twin, latex=self.spelling_of(twin)) for twin, main in self.twins.items()]
-        values = {**letters.values, **{twin: letters.values[main] for twin, main in self.twins.items()}}
-        return replace(self.robot, letters=Letters((*letters.symbols, *new), slots, values))
-
-    def spelling_of(self, name: str) -> str:
-        """How a symbol is printed."""
-        return next(spelling for spelling, stands_for in self.spellings.items() if stands_for == name)
 
     @cached_property
     def vocabulary(self) -> Vocabulary:
         """The spellings as the LaTeX reader looks them up."""
         return Vocabulary(self.spellings)
 
-    @cached_property
-    def notation(self) -> Mapping[str, str]:
-        """How the text spells each symbol that it has, by name: as it is printed first."""
-        found: dict[str, str] = {}
-        for equation in self.equations:
-            components = self.read(equation)[0].components if equation.quantity != DEFINITION else ()
-            for name, spelling in (pair for component in components for pair in component.spellings):
-                found.setdefault(name, spelling)
-        return found
-
-    @cached_property
-    def _done(self) -> dict[Equation, tuple[Split, ...]]:
-        """What has been read."""
-        return {}
-
-    def read(self, equation: Equation) -> tuple[Split, ...]:
-        """The terms of an equation; several ways where its text does not show where components end."""
-        if equation not in self._done:
-            self._done[equation] = self._read(equation)
-        return self._done[equation]
-
-    def _read(self, equation: Equation) -> tuple[Split, ...]:
-        count = max(1, len(equation.components))
-        if self.language == "latex" and len(equation.texts) == 1:
-            return read_latex(equation.texts[0], self.vocabulary, count)
-        if self.language == "latex":
-            one = [read_latex(text, self.vocabulary, 1)[0].components[0] for text in equation.texts]
-            return (Split(tuple(one)),)
-        return (Split(tuple(read_python(text, self.spellings) for text in equation.texts)),)
+    def dimension(self, equation: Equation) -> Dimension:
+        """The dimension that every term of an equation should have."""
+        if equation.quantity == "tau":
+            rotations = [rotation for joint in self.robot.model.moving for rotation in joint.type.rotations]
+            return MOMENT if rotations[equation.place] else FORCE
+        return {"vC": ACCELERATION, "F": FORCE, "f": FORCE, "N": MOMENT, "n": MOMENT}[equation.quantity]

@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
-from rttrr_pin.derivation.chain import Letters, SymbolicRobot, almost_right_angles, default_letters, payload_letters
 from rttrr_pin.derivation.forms import FORMS, Derivation, Derived, derive, only_leaf
-from rttrr_pin.derivation.quantities import DEFAULT, SUBJECTS
+from rttrr_pin.derivation.quantities import DEFAULT, QUANTITIES
+from rttrr_pin.derivation.symbolic_robot import (
+    ParameterSymbols,
+    SymbolicRobot,
+    almost_right_angles,
+    default_symbols,
+    payload_symbols,
+)
 from rttrr_pin.derivation.symbols import Symbol
 
 __all__ = [
     "DEFAULT",
     "FORMS",
-    "SUBJECTS",
+    "QUANTITIES",
     "Derivation",
     "Derived",
-    "Letters",
+    "ParameterSymbols",
     "Symbol",
     "SymbolicRobot",
     "almost_right_angles",
-    "default_letters",
+    "default_symbols",
     "derive",
     "only_leaf",
-    "payload_letters",
+    "payload_symbols",
 ]

@@ -11,7 +11,7 @@ from fractions import Fraction
 from math import gcd, lcm
 
 from rttrr_pin.derivation.ring import Ring
-from rttrr_pin.derivation.symbols import Factors, Role, Symbol, Terms
+from rttrr_pin.derivation.symbols import Expression, Factors, Role, Symbol
 from rttrr_pin.derivation.tree import Power, Product, Sum
 
 GROUPS = (Role.ACCELERATION, Role.RATE, Role.SIGN, Role.GRAVITY, Role.PAYLOAD)
@@ -24,7 +24,7 @@ DEPTH = 3
 """Brackets within the bracket of a group."""
 
 LEAST, MOST = 4, 100
-"""Terms of a sum that is tried whether it is a product of sums."""
+"""Expression of a sum that is tried whether it is a product of sums."""
 
 SIMPLE = 64
 """The largest denominator of numbers that count as exact, and are factored out."""
@@ -46,7 +46,7 @@ class Presenter:
             "c" + name.removeprefix("s"): name for name, symbol in symbols.items() if symbol.role is Role.SINE
         }
 
-    def expression(self, terms: Terms) -> Sum:
+    def expression(self, terms: Expression) -> Sum:
         """The expression for a polynomial.
 
         Args:
@@ -56,7 +56,7 @@ class Presenter:
             One term for each product of accelerations, rates, gravity and payload, in this order: accelerations,
             squares of rates, products of rates, single rates, signs, gravity, payload, the rest.
         """
-        groups: dict[Factors, Terms] = {}
+        groups: dict[Factors, Expression] = {}
         for factors, coefficient in terms.items():
             outer = tuple(factor for factor in factors if self.symbols[factor[0]].role in GROUPS)
             inner = tuple(factor for factor in factors if self.symbols[factor[0]].role not in GROUPS)
@@ -67,7 +67,7 @@ class Presenter:
             printed += [self._times(outer, inside)] if outer else inside
         return Sum(tuple(printed))
 
-    def shortest(self, terms: Terms) -> Terms:
+    def shortest(self, terms: Expression) -> Expression:
         """The same with s^2 for 1 - c^2, angle by angle and cofactor by cofactor, where it saves a term."""
         before = -1
         while len(terms) != before:
@@ -76,7 +76,7 @@ class Presenter:
                 terms = _with_squares(terms, cosine, sine)
         return terms
 
-    def _factored(self, terms: Terms, depth: int) -> tuple[Product, ...]:
+    def _factored(self, terms: Expression, depth: int) -> tuple[Product, ...]:
         """Terms with what they share in front: of all of them, then again and again of as many as share a symbol."""
         coefficient, common, rest = self._content(terms)
         if len(rest) == 1:
@@ -88,7 +88,7 @@ class Presenter:
             return brackets[0].terms
         return (self._product(coefficient, common, brackets),)
 
-    def _irreducible(self, terms: Terms) -> tuple[Fraction, list[Terms]]:
+    def _irreducible(self, terms: Expression) -> tuple[Fraction, list[Expression]]:
         """A number, and sums whose product with it these terms are; the order does not depend on who factors them."""
         if not LEAST <= len(terms) <= MOST or any(x.denominator > SIMPLE for x in terms.values()):
             return Fraction(1), [terms]
@@ -105,13 +105,13 @@ class Presenter:
             found += [rest] * power
         return total, sorted(found, key=lambda x: [self._order(factors) for factors in sorted(x, key=self._order)])
 
-    def _upright(self, number: Fraction, terms: Terms) -> tuple[Fraction, Terms]:
+    def _upright(self, number: Fraction, terms: Expression) -> tuple[Fraction, Expression]:
         """The same product, the first term of the sum positive."""
         if terms[min(terms, key=self._order)] > 0:
             return number, terms
         return -number, {factors: -x for factors, x in terms.items()}
 
-    def _split(self, rest: Terms, depth: int) -> tuple[Product, ...]:
+    def _split(self, rest: Expression, depth: int) -> tuple[Product, ...]:
         parts: list[Product] = []
         while (shared := self._most_shared(rest)) is not None:
             taken = {factors: x for factors, x in rest.items() if any(name == shared for name, _ in factors)}
@@ -119,13 +119,13 @@ class Presenter:
             parts += self._factored(taken, depth - 1)
         return (*_merged(parts), *self._sorted(rest))
 
-    def _most_shared(self, terms: Terms) -> str | None:
+    def _most_shared(self, terms: Expression) -> str | None:
         """The symbol that stands in most terms, in two at least."""
         counts = Counter(name for factors in terms for name, _ in factors)
         shared = [name for name, count in counts.items() if count > 1]
         return min(shared, key=lambda name: (-counts[name], self._rank[name]), default=None)
 
-    def _content(self, terms: Terms) -> tuple[Fraction, Factors, Terms]:
+    def _content(self, terms: Expression) -> tuple[Fraction, Factors, Expression]:
         """A number and a product of symbols that all terms share, and what they leave."""
         first = next(iter(terms))
         powers = {name: min(dict(factors).get(name, 0) for factors in terms) for name, _ in first}
@@ -152,7 +152,7 @@ class Presenter:
         powers = [Power(name, power) for name, power in sorted(factors, key=lambda factor: self._rank[factor[0]])]
         return Product(coefficient, (*powers, *brackets))
 
-    def _sorted(self, terms: Terms) -> tuple[Product, ...]:
+    def _sorted(self, terms: Expression) -> tuple[Product, ...]:
         return tuple(self._product(terms[factors], factors) for factors in sorted(terms, key=self._order))
 
     def _order(self, factors: Factors) -> list[tuple[tuple[int, int], int]]:
@@ -190,7 +190,7 @@ def _merged(parts: Iterable[Product]) -> list[Product]:
     return merged
 
 
-def _with_squares(terms: Terms, cosine: str, sine: str) -> Terms:
+def _with_squares(terms: Expression, cosine: str, sine: str) -> Expression:
     """Take s^2 for 1 - c^2 where both terms are there."""
     terms = dict(terms)
     for factors in list(terms):

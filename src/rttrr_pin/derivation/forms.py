@@ -9,13 +9,13 @@ from typing import Protocol
 
 from rttrr_pin.core.algebra import Scalar, Vector
 from rttrr_pin.core.model import Model
-from rttrr_pin.derivation.chain import Letters, SymbolicRobot, default_letters
-from rttrr_pin.derivation.derivation import TooLongError, closed_forms
+from rttrr_pin.derivation.closed_forms import TooLongError, closed_forms
 from rttrr_pin.derivation.model_terms import model_terms
-from rttrr_pin.derivation.quantities import DEFAULT, SUBJECTS, Extent, Index, indices
+from rttrr_pin.derivation.quantities import DEFAULT, QUANTITIES, Extent, Index, indices
 from rttrr_pin.derivation.ring import Ring
 from rttrr_pin.derivation.stepwise import Step, Stepwise, needed
-from rttrr_pin.derivation.symbols import Symbol, Terms
+from rttrr_pin.derivation.symbolic_robot import ParameterSymbols, SymbolicRobot, default_symbols
+from rttrr_pin.derivation.symbols import Expression, Symbol
 from rttrr_pin.errors import InputError, UnknownNameError
 
 FORMS = ("auto", "expanded", "stepwise")
@@ -35,14 +35,14 @@ class Derived:
     """One quantity.
 
     Attributes:
-        name: as in `SUBJECTS`.
+        name: as in `QUANTITIES`.
         shape: of its array for one state.
         terms: of each entry, by its index from 0.
     """
 
     name: str
     shape: tuple[int, ...]
-    terms: Mapping[Index, Terms]
+    terms: Mapping[Index, Expression]
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,7 @@ class Derivation:
         robot: the robot in symbols.
         form: "expanded" or "stepwise".
         reason: why this form, in words.
-        steps: what is named on the way, each in letters and earlier names; none in expanded form.
+        steps: what is named on the way, each in parameter symbols and earlier names; none in expanded form.
         quantities: by name.
     """
 
@@ -66,7 +66,7 @@ class Derivation:
     @property
     def symbols(self) -> dict[str, Symbol]:
         """Every symbol that may occur, by name, in a fixed order."""
-        given = (*self.robot.motion, *self.robot.letters.symbols, *(step.symbol for step in self.steps))
+        given = (*self.robot.motion, *self.robot.parameters.symbols, *(step.symbol for step in self.steps))
         return {symbol.name: symbol for symbol in given}
 
     @property
@@ -78,7 +78,7 @@ class Derivation:
         """How many terms there are in all."""
         return sum(map(len, self.all_terms()))
 
-    def all_terms(self) -> Iterable[Terms]:
+    def all_terms(self) -> Iterable[Expression]:
         """Every polynomial: of the steps, then of the entries."""
         yield from (step.terms for step in self.steps)
         for derived in self.quantities.values():
@@ -89,7 +89,7 @@ def derive(
     robot: HasModel | Model,
     quantities: Sequence[str] = DEFAULT,
     form: str = "auto",
-    letters: Letters | None = None,
+    parameters: ParameterSymbols | None = None,
     payload_link: int | None = None,
     right_angles: bool = False,
 ) -> Derivation:
@@ -97,16 +97,18 @@ def derive(
 
     Args:
         robot: the robot, or its model.
-        quantities: names of `SUBJECTS`: v_dot_C, F, N, f, n, tau, M, C, g.
-        form: "expanded" writes each entry in letters alone; "stepwise" names the vectors that the recursion finishes on
-            each link, for robots whose expanded form nobody could read; "auto" expands up to `MOST_TERMS` terms.
-        letters: what stands for the robot's numbers; None names each that is not zero. `Letters()` keeps the numbers.
-        payload_link: index of the link that the payload acts at; None: there is none, or, where letters are None, the
-            only link that carries no other.
+        quantities: names of `QUANTITIES`: v_dot_C, F, N, f, n, tau, M, C, g.
+        form: "expanded" writes each entry in the parameter symbols alone; "stepwise" names the vectors that the
+            recursion finishes on each link, for robots whose expanded form nobody could read; "auto" expands up to
+            `MOST_TERMS` terms.
+        parameters: what stands for the robot's numbers; None names each that is not zero, `ParameterSymbols()` keeps
+            the numbers.
+        payload_link: index of the link that the payload acts at; None: there is none, or, where parameters are None,
+            the only link that carries no other.
         right_angles: whether rotations within 1e-4 of right angles are read as such.
 
     Returns:
-        Polynomials in the letters, coordinates, rates, accelerations, sines and cosines, in SI units.
+        Polynomials in the parameter symbols, coordinates, rates, accelerations, sines and cosines, in SI units.
 
     Raises:
         UnknownNameError: there is no such quantity or form.
@@ -114,17 +116,17 @@ def derive(
     """
     model = robot if isinstance(robot, Model) else robot.model
     for name in quantities:
-        if name not in SUBJECTS:
-            raise UnknownNameError("quantity", name, SUBJECTS)
+        if name not in QUANTITIES:
+            raise UnknownNameError("quantity", name, QUANTITIES)
     if form not in FORMS:
         raise UnknownNameError("form", form, FORMS)
     if not quantities:
-        raise InputError(f"no quantity is asked for: name some of {', '.join(SUBJECTS)}")
+        raise InputError(f"no quantity is asked for: name some of {', '.join(QUANTITIES)}")
     wanted = list(dict.fromkeys(quantities))
-    if letters is None:
+    if parameters is None:
         payload_link = only_leaf(model) if payload_link is None else payload_link
-        letters = default_letters(model, payload_link)
-    symbolic = SymbolicRobot(model, letters, payload_link, right_angles)
+        parameters = default_symbols(model, payload_link)
+    symbolic = SymbolicRobot(model, parameters, payload_link, right_angles)
     if form == "stepwise":
         return _stepwise(symbolic, wanted, "as asked for")
     if form == "expanded":
@@ -147,7 +149,7 @@ def _expanded(robot: SymbolicRobot, quantities: Sequence[str], most_terms: int |
     found: dict[str, Sequence[Scalar]] = {}
     for name in quantities:
         rows = getattr(forms if name in vars(forms) else parts, name)
-        found[name] = rows if SUBJECTS[name].extent is Extent.JOINTS else [x for row in rows for x in row]
+        found[name] = rows if QUANTITIES[name].extent is Extent.JOINTS else [x for row in rows for x in row]
     derived = {name: _derived(robot.model, name, map(ring.terms, entries)) for name, entries in found.items()}
     result = Derivation(robot, "expanded", "as asked for", (), derived)
     if most_terms is None:
@@ -160,7 +162,7 @@ def _expanded(robot: SymbolicRobot, quantities: Sequence[str], most_terms: int |
 def _stepwise(robot: SymbolicRobot, quantities: Sequence[str], reason: str) -> Derivation:
     runs = Stepwise(robot)
     motion = runs.motion()
-    made: dict[str, Callable[[], Iterable[Terms]]] = {
+    made: dict[str, Callable[[], Iterable[Expression]]] = {
         "v_dot_C": lambda: _flat(runs, runs.accelerations()),
         "F": lambda: _flat(runs, motion.F),
         "N": lambda: _flat(runs, motion.N),
@@ -176,10 +178,10 @@ def _stepwise(robot: SymbolicRobot, quantities: Sequence[str], reason: str) -> D
     return Derivation(robot, "stepwise", reason, tuple(needed(runs.steps.values(), results)), derived)
 
 
-def _derived(model: Model, name: str, terms: Iterable[Terms]) -> Derived:
-    shape = SUBJECTS[name].extent.shape(model)
+def _derived(model: Model, name: str, terms: Iterable[Expression]) -> Derived:
+    shape = QUANTITIES[name].extent.shape(model)
     return Derived(name, shape, dict(zip(indices(shape), terms, strict=True)))
 
 
-def _flat(runs: Stepwise, vectors: Iterable[Vector]) -> Iterator[Terms]:
+def _flat(runs: Stepwise, vectors: Iterable[Vector]) -> Iterator[Expression]:
     return (runs.terms(component) for vector in vectors for component in vector)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from flint import fmpq
 
-from rttrr_pin.derivation.derivation import ClosedForms
+from rttrr_pin.derivation.closed_forms import ClosedForms
 from rttrr_pin.derivation.ring import Polynomial, Ring
 from rttrr_pin.derivation.symbols import Role
 

@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 
 from rttrr_pin.core.model import Model
-from rttrr_pin.derivation.chain import AXES
 from rttrr_pin.derivation.motion import index
+from rttrr_pin.derivation.symbolic_robot import AXES
 
 Index = tuple[int, ...]
 """Where an entry stands in its array, from 0."""
@@ -31,7 +31,7 @@ class Extent(enum.Enum):
 
 
 @dataclass(frozen=True, slots=True)
-class Subject:
+class Quantity:
     """A quantity that can be derived.
 
     Attributes:
@@ -78,14 +78,14 @@ def _acceleration(at: Index) -> str:
 
 LINKS, JOINTS, PAIRS = Extent.LINKS, Extent.JOINTS, Extent.PAIRS
 
-SUBJECTS: Mapping[str, Subject] = {
-    "v_dot_C": Subject(
+QUANTITIES: Mapping[str, Quantity] = {
+    "v_dot_C": Quantity(
         LINKS, "qva", False, "acceleration of the centre of mass of each link, gravity included", "m/s^2", _acceleration
     ),
-    "F": Subject(LINKS, "qva", False, "net force on each link", "N", _of_link("F")),
-    "N": Subject(LINKS, "qva", False, "net moment on each link about its centre of mass", "N m", _of_link("N")),
-    "f": Subject(LINKS, "qva", True, "force that the link before exerts on each link", "N", _of_link("f")),
-    "n": Subject(
+    "F": Quantity(LINKS, "qva", False, "net force on each link", "N", _of_link("F")),
+    "N": Quantity(LINKS, "qva", False, "net moment on each link about its centre of mass", "N m", _of_link("N")),
+    "f": Quantity(LINKS, "qva", True, "force that the link before exerts on each link", "N", _of_link("f")),
+    "n": Quantity(
         LINKS,
         "qva",
         True,
@@ -93,7 +93,7 @@ SUBJECTS: Mapping[str, Subject] = {
         "N m",
         _of_link("n"),
     ),
-    "tau": Subject(
+    "tau": Quantity(
         JOINTS,
         "qva",
         True,
@@ -101,8 +101,8 @@ SUBJECTS: Mapping[str, Subject] = {
         "N m or N",
         _of_joint(r"\tau"),
     ),
-    "M": Subject(PAIRS, "q", False, "mass matrix, armature included", "kg m^2, kg m or kg", _of_pair("M")),
-    "C": Subject(
+    "M": Quantity(PAIRS, "q", False, "mass matrix, armature included", "kg m^2, kg m or kg", _of_pair("M")),
+    "C": Quantity(
         PAIRS,
         "qv",
         False,
@@ -110,7 +110,7 @@ SUBJECTS: Mapping[str, Subject] = {
         "N m s, N s or kg/s",
         _of_pair("C"),
     ),
-    "g": Subject(JOINTS, "q", False, "driving force that holds the robot still", "N m or N", _of_joint("g")),
+    "g": Quantity(JOINTS, "q", False, "driving force that holds the robot still", "N m or N", _of_joint("g")),
 }
 """By name; all vectors of links are in the link's own frame {i}."""
 

@@ -13,7 +13,7 @@ from typing import Any
 from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from rttrr_pin.core.algebra import Scalar, Vector
-from rttrr_pin.derivation.symbols import NUMBER, Dimension, Factors, Role, Symbol, Terms
+from rttrr_pin.derivation.symbols import Expression, Factors, Role, Symbol
 
 Polynomial = fmpq_mpoly
 
@@ -75,7 +75,7 @@ class Ring:
         """The same for each component."""
         return Vector(*(self.reduced(component) for component in x))
 
-    def terms(self, x: Any) -> Terms:
+    def terms(self, x: Any) -> Expression:
         """A polynomial as coefficients by product."""
         names = self._names
         return {
@@ -106,20 +106,13 @@ class Ring:
         images = [self.lift(values[name]) if name in values else self[name] for name in self._names]
         return self.reduced(self.lift(x).compose(*images, ctx=self._context))
 
-    def dimension(self, factors: Factors) -> Dimension:
-        """The dimension of a product of symbols."""
-        total = NUMBER
-        for name, power in factors:
-            total = total.times(self.symbols[name].dimension, power)
-        return total
-
 
 def exact(value: float) -> fmpq:
     """A float as the fraction that it is."""
     return fmpq(*float(value).as_integer_ratio())
 
 
-def evaluate(terms: Terms, values: Mapping[str, Any], number: Callable[[Fraction], Any] = float) -> Any:
+def evaluate(terms: Expression, values: Mapping[str, Any], number: Callable[[Fraction], Any] = float) -> Any:
     """The value of a polynomial.
 
     Args:

@@ -21,10 +21,10 @@ from rttrr_pin.core.dynamics import Result, dynamics
 from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.newton_euler import Payload
-from rttrr_pin.derivation.chain import AXES, SymbolicRobot
-from rttrr_pin.derivation.derivation import symbolic_arithmetic, unit_masses
+from rttrr_pin.derivation.closed_forms import symbolic_arithmetic, unit_masses
 from rttrr_pin.derivation.motion import index
-from rttrr_pin.derivation.symbols import FORCE, MOMENT, NUMBER, Dimension, Role, Symbol, Terms
+from rttrr_pin.derivation.symbolic_robot import AXES, SymbolicRobot
+from rttrr_pin.derivation.symbols import FORCE, MOMENT, NUMBER, Dimension, Expression, Role, Symbol
 
 OUTWARDS, INWARDS = ("w", "w_dot", "v_dot", "F", "N"), ("f", "n")
 """What the specification finishes on each link, in its order."""
@@ -53,7 +53,7 @@ class Step:
     """A name and what it stands for, in letters and names of earlier steps."""
 
     symbol: Symbol
-    terms: Terms
+    terms: Expression
 
 
 @dataclass(frozen=True)
@@ -94,7 +94,7 @@ class Stepwise:
     """
 
     def __init__(self, robot: SymbolicRobot) -> None:
-        taken = {symbol.name for symbol in (*robot.motion, *robot.letters.symbols)}
+        taken = {symbol.name for symbol in (*robot.motion, *robot.parameters.symbols)}
         self._names = _free_names(len(robot.model.links), taken)
         self._places = {name: place for place, name in self._names.items()}
         self.robot = replace(robot, steps=tuple(Symbol(name, name, Role.STEP) for name in self._places))
@@ -110,14 +110,14 @@ class Stepwise:
         robot = self.robot
         return self._result(Run(robot.model, robot.v, robot.a, robot.gravity, accelerations=True)).F
 
-    def gravity(self) -> list[Terms]:
+    def gravity(self) -> list[Expression]:
         """What holds the robot still."""
         model = self.robot.model.without_joint_effects()
         nothing = [0] * model.nv
         run = Run(model, nothing, nothing, self.robot.gravity, suffix="_g", latex=",g")
         return [self.terms(x, run) for x in self._result(run).tau]
 
-    def mass_matrix(self) -> list[list[Terms]]:
+    def mass_matrix(self) -> list[list[Expression]]:
         """M(q), armature included; of what mirrors, the half that serial arms have the simpler form of."""
         model = _with_armature_alone(self.robot.model)
         columns = []
@@ -127,7 +127,7 @@ class Stepwise:
             columns.append([self.terms(x, run) for x in self._result(run).tau])
         return [[columns[max(i, j)][min(i, j)] for j in range(model.nv)] for i in range(model.nv)]
 
-    def coriolis(self) -> list[list[Terms]]:
+    def coriolis(self) -> list[list[Expression]]:
         """C(q, v), by its columns 1/2 d tau / d v_j."""
         model, half = self.robot.model.without_joint_effects(), fmpq(1, 2)
         columns = []
@@ -139,7 +139,7 @@ class Stepwise:
             columns.append([self.terms(_part(x) * half, run) for x in self._result(run).tau])
         return [[column[i] for column in columns] for i in range(model.nv)]
 
-    def terms(self, x: Scalar, run: Run | None = None) -> Terms:
+    def terms(self, x: Scalar, run: Run | None = None) -> Expression:
         """A polynomial of a run (None: of the motion itself), with the names that its steps have outside it."""
         ring, suffix = self.robot.ring, run.suffix if run else ""
         return {
@@ -192,7 +192,7 @@ class Stepwise:
         return self.robot.ring[name]
 
 
-def needed(steps: Iterable[Step], results: Iterable[Terms]) -> list[Step]:
+def needed(steps: Iterable[Step], results: Iterable[Expression]) -> list[Step]:
     """The steps that results depend on, in their order."""
     wanted = {name for terms in results for factors in terms for name, _ in factors}
     kept = []

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import enum
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple
@@ -11,7 +11,10 @@ from typing import NamedTuple
 Factors = tuple[tuple[str, int], ...]
 """Names of symbols with their exponents, none of them 0, sorted by name."""
 
-Terms = dict[Factors, Fraction]
+Term = tuple[Fraction, Factors]
+"""A coefficient and the product that it multiplies."""
+
+Expression = dict[Factors, Fraction]
 """A polynomial: the coefficient of each product of symbols, none of them 0."""
 
 
@@ -58,11 +61,11 @@ class Role(enum.StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Symbol:
-    """One letter of a closed form.
+    """One symbol of a closed form.
 
     Attributes:
         name: an identifier, for Python, C and the terms of a polynomial.
-        latex: how the paper's letters have it.
+        latex: how it is printed.
         role: what it stands for.
         dimension: in length, mass and time.
         index: of a coordinate, rate, acceleration or sign, its place in q, v or a, from 1; of a cosine or sine, that
@@ -81,8 +84,24 @@ def factors_of(exponents: dict[str, int]) -> Factors:
     return tuple(sorted((name, power) for name, power in exponents.items() if power))
 
 
+def expression_of(terms: Iterable[Term]) -> Expression:
+    """The sum of terms."""
+    total: Expression = {}
+    for coefficient, factors in terms:
+        total[factors] = total.get(factors, Fraction(0)) + coefficient
+    return {factors: coefficient for factors, coefficient in total.items() if coefficient}
+
+
+def dimension_of(factors: Factors, symbols: Mapping[str, Symbol]) -> Dimension:
+    """The dimension of a product."""
+    total = NUMBER
+    for name, power in factors:
+        total = total.times(symbols[name].dimension, power)
+    return total
+
+
 def renamed_factors(factors: Factors, names: Mapping[str, str]) -> Factors:
-    """A product with other letters in place of some."""
+    """A product with other symbols in place of some."""
     if not any(name in names for name, _ in factors):
         return factors
     powers: dict[str, int] = {}
@@ -91,10 +110,6 @@ def renamed_factors(factors: Factors, names: Mapping[str, str]) -> Factors:
     return factors_of(powers)
 
 
-def renamed(terms: Terms, names: Mapping[str, str]) -> Terms:
-    """A polynomial with other letters in place of some."""
-    total: Terms = {}
-    for factors, coefficient in terms.items():
-        key = renamed_factors(factors, names)
-        total[key] = total.get(key, Fraction(0)) + coefficient
-    return {factors: coefficient for factors, coefficient in total.items() if coefficient}
+def renamed(expression: Expression, names: Mapping[str, str]) -> Expression:
+    """A polynomial with other symbols in place of some."""
+    return expression_of((coefficient, renamed_factors(factors, names)) for factors, coefficient in expression.items())

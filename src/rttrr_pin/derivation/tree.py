@@ -30,7 +30,7 @@ class Product:
 
 @dataclass(frozen=True, slots=True)
 class Sum:
-    """Terms in the order in which they are printed; 0 where there are none."""
+    """Expression in the order in which they are printed; 0 where there are none."""
 
     terms: tuple[Product, ...] = ()
 

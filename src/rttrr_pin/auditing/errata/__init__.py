@@ -9,13 +9,13 @@ from rttrr_pin.auditing.errata.html import html
 from rttrr_pin.auditing.errata.latex import latex
 from rttrr_pin.auditing.errata.markdown import markdown
 from rttrr_pin.auditing.errata.sheet import Sheet
-from rttrr_pin.auditing.verdicts import Audit
+from rttrr_pin.auditing.results import AuditResult
 
 WRITERS: Mapping[str, Callable[[Sheet], str]] = {"markdown": markdown, "latex": latex, "html": html}
 """A new format is a module here with a function from a sheet to its text, an entry, and an option of `audit`."""
 
 
-def errata(result: Audit, form: str) -> str:
+def errata(result: AuditResult, form: str) -> str:
     """The errata sheet of an audit.
 
     Args:

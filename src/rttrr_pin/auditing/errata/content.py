@@ -20,20 +20,13 @@ from rttrr_pin.auditing.errata.sheet import (
     Words,
 )
 from rttrr_pin.auditing.errata.typeset import settable
-from rttrr_pin.auditing.findings import Finding
-from rttrr_pin.auditing.verdicts import Audit, ComponentAudit, Verdict
+from rttrr_pin.auditing.results import AuditResult, ComponentAudit, Finding, Verdict, cells, counted
 from rttrr_pin.auditing.wording import (
     MEANING,
-    Totals,
-    by_term,
-    cells,
     convention_words,
-    counted,
-    definitions,
     dimension_summary,
     dimension_words,
     evidence_words,
-    totals,
     verdict_words,
 )
 
@@ -44,20 +37,20 @@ FINDING_WIDTHS = (0.09, 0.13, 0.33, 0.33, 0.12)
 """Id, kind, printed, should be, dimension."""
 
 
-def sheet_of(result: Audit) -> Sheet:
+def sheet_of(result: AuditResult) -> Sheet:
     """The errata sheet of an audit."""
     return Sheet(f"Errata: {result.publication.title}", tuple(_blocks(result)))
 
 
-def _blocks(result: Audit) -> Iterator[Block]:
-    found = totals(result.components)
-    yield from _opening(result, found)
+def _blocks(result: AuditResult) -> Iterator[Block]:
+    yield from _opening(result)
     yield from _summary(result)
     yield from _conventions(result)
-    unread = [component for component in result.components if component.verdict is Verdict.UNPARSED]
-    if unread:
-        yield Heading("What could not be read")
-        yield Bullets(tuple((Words(f"{_name(one)}: ", strong=True), *prose(one.unparsed)) for one in unread))
+    for heading, verdict in (("Not read", Verdict.UNPARSED), ("Symbols to declare", Verdict.UNDECLARED)):
+        reasons = [(x, x.unparsed or "; ".join(x.undeclared)) for x in result.components if x.verdict is verdict]
+        if reasons:
+            yield Heading(heading)
+            yield Bullets(tuple((Words(f"{_name(x)}: ", strong=True), *prose(reason)) for x, reason in reasons))
     wrong = [component for component in result.components if component.findings]
     if wrong:
         yield Heading("Findings")
@@ -66,51 +59,51 @@ def _blocks(result: Audit) -> Iterator[Block]:
     yield from _right(result)
 
 
-def _opening(result: Audit, found: Totals) -> Iterator[Block]:
-    publication = result.publication
-    wrong_dimension = dimension_summary(found)
+def _opening(result: AuditResult) -> Iterator[Block]:
+    publication, totals = result.publication, result.totals
+    wrong_dimension = dimension_summary(totals)
     yield Paragraph(
         (
             Words(publication.source, strong=True),
             Words(
-                f". {counted(len(publication.equations), 'equation')} with {counted(found.components, 'component')} "
-                "were held, term by term, against the Newton-Euler recursion run on the same symbols."
+                f". {counted(len(publication.equations), 'equation')} with {counted(totals.components, 'component')} "
+                "were compared, term by term, with the Newton-Euler recursion run on the same symbols."
             ),
         )
     )
     yield Paragraph(
         (
             Words(
-                f"{found.verdicts[Verdict.MATCH]} are right as printed, {found.verdicts[Verdict.DIFFERS]} differ, with "
-                f"{counted(found.findings, 'finding')}, and {found.verdicts[Verdict.UNPARSED]} could not be read."
+                f"{result.count(Verdict.MATCH)} are right as printed, {result.count(Verdict.DIFFERS)} differ, with "
+                f"{counted(totals.findings, 'finding')}, and {result.count(Verdict.UNPARSED)} could not be read."
                 + (f" {wrong_dimension}." if wrong_dimension else "")
             ),
         )
     )
-    if not found.findings:
+    if not totals.findings:
         return
     yield Paragraph(
         (
             Words(
-                "Printed and derived terms are paired so that the fewest slips explain the difference. A finding is "
-                "one slip, and its name is that of the component with a number. Each corrected equation is given "
+                "Printed and derived terms are paired so that the fewest errors explain the difference. A finding is "
+                "one error, and its name is that of the component with a number. Each corrected equation is given "
                 "whole, the terms that were changed or added being marked; a term in excess is not in it any more."
             ),
         )
     )
     rows = [
         ((Words(str(kind)),), (Words(MEANING[kind]),), (Words(str(number)),))
-        for kind, number in found.kinds.items()
+        for kind, number in totals.kinds.items()
         if number
     ]
     yield Table(("kind", "what it is", "findings"), tuple(rows))
 
 
-def _summary(result: Audit) -> Iterator[Block]:
-    rows = cells(result.components)
+def _summary(result: AuditResult) -> Iterator[Block]:
+    rows = list(cells(result.components))
     if not rows:
         return
-    axes = [axis for axis in ("x", "y", "z", "") if any(axis in row for row in rows.values())]
+    axes = [axis for axis in ("x", "y", "z", "") if any(axis in row for _, _, row in rows)]
     yield Heading("All equations")
     body = tuple(
         (
@@ -118,43 +111,42 @@ def _summary(result: Audit) -> Iterator[Block]:
             (Words(quantity),),
             *((_verdict(row[axis]),) if axis in row else () for axis in axes),
         )
-        for (number, quantity), row in rows.items()
+        for number, quantity, row in rows
     )
     yield Table(("equation", "states", *(axis or "scalar" for axis in axes)), body)
-    defining = definitions(result.publication)
-    if defining:
-        numbers = ", ".join(f"({number})" for number in defining)
-        yield Paragraph((Words(f"Only saying what letters mean, with nothing to compare: {numbers}."),))
+    if result.definitions:
+        numbers = ", ".join(f"({number})" for number in result.definitions)
+        yield Paragraph((Words(f"Only definitions of symbols, with nothing to compare: {numbers}."),))
 
 
 def _verdict(component: ComponentAudit) -> Words:
     return Words(verdict_words(component), strong=component.verdict is not Verdict.MATCH)
 
 
-def _conventions(result: Audit) -> Iterator[Block]:
+def _conventions(result: AuditResult) -> Iterator[Block]:
     if result.conventions:
         yield Heading("How the text was read")
         yield Bullets(
             tuple(
                 (Words(f"{check.convention.title}: ", strong=True),
-                 *prose(f"{' '.join(check.convention.text.split())} {convention_words(check)}".strip()))
+                 *prose(convention_words(check)))
                 for check in result.conventions
             )
         )  # fmt: skip
 
 
-def _component(result: Audit, component: ComponentAudit) -> Iterator[Block]:
+def _component(result: AuditResult, component: ComponentAudit) -> Iterator[Block]:
     language = result.publication.language
     line = f" (line {component.line} of the text)" if component.line else ""
     yield Heading(_name(component), 2)
-    told = f"{counted(len(component.findings), 'finding')}; {component.printed_terms} terms printed"
-    yield Paragraph((Words(f"{told}{line}, {component.derived_terms} derived."),))
-    rows = [row for group in by_term(component.findings) for row in _finding_rows(group, language)]
+    counts = f"{counted(len(component.findings), 'finding')}; {component.printed_terms} terms printed"
+    yield Paragraph((Words(f"{counts}{line}, {component.derived_terms} derived."),))
+    rows = [row for group in component.by_term for row in _finding_rows(group, language)]
     yield Table(("finding", "kind", "printed", "should be", "dimension"), tuple(rows), FINDING_WIDTHS)
-    notes = [f for group in by_term(component.findings) for f in group[:1] if f.note]
+    notes = [f for group in component.by_term for f in group[:1] if f.note]
     if notes or component.notes:
-        told_notes = [(Words(f"{f.id}: ", strong=True), *prose(f.note)) for f in notes]
-        yield Bullets((*told_notes, *(prose(note) for note in component.notes)))
+        lines = [(Words(f"{f.id}: ", strong=True), *prose(f.note)) for f in notes]
+        yield Bullets((*lines, *(prose(note) for note in component.notes)))
     if component.evidence is not None:
         yield Paragraph((Words("Evidence. ", strong=True), Words(_units(" ".join(evidence_words(result, component))))))
     if component.corrected:
@@ -168,7 +160,7 @@ def _units(text: str) -> str:
 
 
 def _finding_rows(group: Sequence[Finding], language: str) -> Iterator[tuple[Line, ...]]:
-    """A row for each slip; the terms stand in the first."""
+    """A row for each error; the terms stand in the first."""
     for k, finding in enumerate(group):
         terms: tuple[Line, ...] = ((Words("the same term"),), ())
         if k == 0:
@@ -237,15 +229,15 @@ def _merged(pieces: Iterable[Piece]) -> Iterator[Piece]:
         yield Words(waiting)
 
 
-def _right(result: Audit) -> Iterator[Block]:
+def _right(result: AuditResult) -> Iterator[Block]:
     right = [component for component in result.components if component.verdict is Verdict.MATCH]
     if right:
         yield Heading("Right as printed")
         names: dict[str, list[ComponentAudit]] = {}
         for component in right:
             names.setdefault(f"({component.equation})", []).append(component)
-        told = "; ".join(f"{number} {', '.join(c.quantity for c in group)}" for number, group in names.items())
-        yield Paragraph((Words(f"{told}."),))
+        listed = "; ".join(f"{number} {', '.join(c.quantity for c in group)}" for number, group in names.items())
+        yield Paragraph((Words(f"{listed}."),))
         noted = [component for component in right if component.notes]
         if noted:
             yield Bullets(

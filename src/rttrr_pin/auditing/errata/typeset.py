@@ -1,4 +1,4 @@
-"""Whether a fragment of LaTeX can be set by itself: printed equations come with slips, and with macros of their own."""
+"""Whether a fragment of LaTeX can be set by itself: printed equations have errors, and macros of their own."""
 
 from __future__ import annotations
 

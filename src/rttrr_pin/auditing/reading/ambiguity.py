@@ -164,8 +164,8 @@ def signs(lines: Sequence[Sequence[int]]) -> list[tuple[int, str]]:
         return [(values[0], "")]
     shown = " ".join("+" if sign > 0 else "-" for sign in doubled[0])
     return [
-        (values[0], f"the signs {shown} read as their product; one may be a slip"),
-        (-values[0], f"of the signs {shown} one read as a slip; it may be their product"),
+        (values[0], f"the signs {shown} read as their product; one may be an error"),
+        (-values[0], f"of the signs {shown} one read as an error; it may be their product"),
     ]
 
 

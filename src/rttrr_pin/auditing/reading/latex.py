@@ -5,7 +5,6 @@ from __future__ import annotations
 from rttrr_pin.auditing.printed import PrintedComponent, Split
 from rttrr_pin.auditing.reading.grammar import UnreadableError, parse
 from rttrr_pin.auditing.reading.layout import Part, layouts
-from rttrr_pin.auditing.reading.notation import spellings_of
 from rttrr_pin.auditing.reading.products import terms_of
 from rttrr_pin.auditing.reading.trees import products_of
 from rttrr_pin.auditing.reading.vocabulary import Vocabulary
@@ -26,11 +25,11 @@ def read_latex(text: str, vocabulary: Vocabulary, components: int = 1) -> tuple[
         exception: `PrintedComponent.unparsed` says where and why, and nothing of that component is given.
     """
     try:
-        found = layouts(text, components)
+        ways = layouts(text, components)
     except UnreadableError as error:
         unread = PrintedComponent(" ".join(text.split()), (), error.placed(text))
         return (Split((unread,) * components),)
-    return tuple(Split(tuple(_component(part, vocabulary, text) for part in way.parts), way.note) for way in found)
+    return tuple(Split(tuple(_component(part, vocabulary, text) for part in way.parts), way.note) for way in ways)
 
 
 def _component(part: Part, vocabulary: Vocabulary, text: str) -> PrintedComponent:
@@ -39,8 +38,7 @@ def _component(part: Part, vocabulary: Vocabulary, text: str) -> PrintedComponen
         if part.fault is not None:
             raise part.fault
         products = products_of(parse(part.tokens, part.end))
-        terms = terms_of(products, vocabulary, text)
-        return PrintedComponent(printed, terms, spellings=spellings_of(products, vocabulary, text))
+        return PrintedComponent(printed, terms_of(products, vocabulary, text))
     except UnreadableError as error:
         return PrintedComponent(printed, (), error.placed(text))
     except RecursionError:

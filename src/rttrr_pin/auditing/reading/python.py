@@ -45,7 +45,7 @@ def read_python(text: str, names: Mapping[str, str]) -> PrintedComponent:
     try:
         tree, places = _parsed(text)
         expression = _Expression(text, places, known)
-        return PrintedComponent(printed, expression.terms(tree), spellings=expression.spellings(tree))
+        return PrintedComponent(printed, expression.terms(tree))
     except UnreadableError as error:
         return PrintedComponent(printed, (), error.placed(text))
     except (RecursionError, MemoryError):
@@ -164,16 +164,6 @@ class _Expression:
         if any(term.readings[0].factors for term in terms):
             raise self.fault(f"only numbers may {what}", node)
         return sum((term.readings[0].coefficient for term in terms), Fraction(0))
-
-    def spellings(self, tree: ast.expr) -> tuple[tuple[str, str], ...]:
-        """Each known symbol by its name, as it is spelled first."""
-        found: dict[str, str] = {}
-        nodes = [node for node in ast.walk(tree) if isinstance(node, SymbolNode | ast.Call)]
-        for node in sorted(nodes, key=self.places.start):
-            name = self.angle(node) if isinstance(node, ast.Call) else self.known.get(ast.unparse(node))
-            if name is not None:
-                found.setdefault(name, ast.unparse(node))
-        return tuple(found.items())
 
     def index(self, node: ast.expr) -> int | None:
         """The index of the coordinate that a variable is."""

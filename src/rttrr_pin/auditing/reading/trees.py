@@ -63,6 +63,10 @@ def _signs(tree: Tree[Token]) -> tuple[tuple[tuple[int, ...], ...], int]:
         else:
             lines[-1].append(token)
     printed = [line for line in lines if line]
+    if not printed:
+        raise UnreadableError(
+            "a line break stands where a sum begins, wanted a sign or a symbol", start_of(_tokens(tree)[0])
+        )
     return tuple(tuple(1 if token == "+" else -1 for token in line) for line in printed), start_of(printed[-1][0])
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from textwrap import wrap
 
 from rttrr_pin.compile.emit.c import identifier
-from rttrr_pin.derivation import SUBJECTS, Derivation
+from rttrr_pin.derivation import QUANTITIES, Derivation
 from rttrr_pin.derivation.quantities import Index
 from rttrr_pin.derivation.tree import Sum
 from rttrr_pin.derivation.writers import wording as words
@@ -67,7 +67,7 @@ def _parameters(derivation: Derivation, robot: str) -> Iterator[str]:
 
 
 def _function(derivation: Derivation, made: Routine, robot: str) -> Iterator[str]:
-    subject, shape = SUBJECTS[made.name], derivation.quantities[made.name].shape
+    subject, shape = QUANTITIES[made.name], derivation.quantities[made.name].shape
     given = [f"const double {x}[{max(1, width(derivation, x))}]" for x in made.inputs]
     if any(True for _ in parameters(derivation)):
         given.insert(0, f"const struct {robot}_parameters *parameters")

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from rttrr_pin.derivation import SUBJECTS, Derivation, Symbol
+from rttrr_pin.derivation import QUANTITIES, Derivation, Symbol
 from rttrr_pin.derivation.collect import SIMPLE, Presenter
 from rttrr_pin.derivation.symbols import Role
 from rttrr_pin.derivation.writers.printing import Notation, lines, text
@@ -121,7 +121,7 @@ def equations(derivation: Derivation, name: str) -> Iterator[Equation]:
     for at, terms in derivation.quantities[name].terms.items():
         if name == "M" and at[1] < at[0]:
             continue
-        latex = SUBJECTS[name].latex(at)
+        latex = QUANTITIES[name].latex(at)
         expression = presenter.expression(terms)
         if text(expression, how) != latex:
             yield Equation(latex, lines(expression, how, ROOM - width(latex) - EM["="]))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from textwrap import wrap
 
-from rttrr_pin.derivation import SUBJECTS, Derivation
+from rttrr_pin.derivation import QUANTITIES, Derivation
 from rttrr_pin.derivation.tree import Sum
 from rttrr_pin.derivation.writers import wording as words
 from rttrr_pin.derivation.writers.glossary import parameters
@@ -93,7 +93,7 @@ def _assigned(name: str, expression: Sum) -> Iterator[str]:
 
 
 def _docstring(derivation: Derivation, made: Routine) -> Iterator[str]:
-    subject, told = SUBJECTS[made.name], arguments(derivation)
+    subject, told = QUANTITIES[made.name], arguments(derivation)
     shape = ", ".join(map(str, derivation.quantities[made.name].shape))
     yield f'    """{subject.meaning[0].upper()}{subject.meaning[1:]}.'
     yield ""

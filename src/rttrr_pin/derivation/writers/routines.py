@@ -6,12 +6,12 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 
-from rttrr_pin.derivation import SUBJECTS, Derivation
+from rttrr_pin.derivation import QUANTITIES, Derivation
 from rttrr_pin.derivation.collect import Presenter
 from rttrr_pin.derivation.motion import angles
 from rttrr_pin.derivation.quantities import Index
 from rttrr_pin.derivation.stepwise import needed
-from rttrr_pin.derivation.symbols import Factors, Role, Terms
+from rttrr_pin.derivation.symbols import Expression, Factors, Role
 from rttrr_pin.derivation.tree import Sum
 from rttrr_pin.derivation.writers.glossary import axis_units, labelled, payload_places
 from rttrr_pin.derivation.writers.printing import Notation, lines
@@ -42,7 +42,7 @@ class Routine:
 
 def routine(derivation: Derivation, name: str) -> Routine:
     """The function for a quantity."""
-    subject, derived = SUBJECTS[name], derivation.quantities[name]
+    subject, derived = QUANTITIES[name], derivation.quantities[name]
     presenter = Presenter(derivation.symbols)
     steps = needed(derivation.steps, derived.terms.values())
     used = _used([*(step.terms for step in steps), *derived.terms.values()])
@@ -123,11 +123,11 @@ def _angle(derivation: Derivation, suffix: str) -> str:
     return f"{angle.multiplier!r} * {coordinate} + {angle.offset!r}"
 
 
-def _used(polynomials: list[Terms]) -> set[str]:
+def _used(polynomials: list[Expression]) -> set[str]:
     return {name for terms in polynomials for factors in terms for name, _ in factors}
 
 
-def _entries(entries: Mapping[Index, Terms], presenter: Presenter) -> Iterator[tuple[Index, Sum | Index]]:
+def _entries(entries: Mapping[Index, Expression], presenter: Presenter) -> Iterator[tuple[Index, Sum | Index]]:
     """Expressions; what an earlier entry already is, such as the mirror of a mass matrix, refers to that."""
     seen: dict[frozenset[tuple[Factors, Fraction]], Index] = {}
     for at, terms in entries.items():

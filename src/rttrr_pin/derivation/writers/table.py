@@ -8,7 +8,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from rttrr_pin.derivation import SUBJECTS, Derivation
+from rttrr_pin.derivation import QUANTITIES, Derivation
 
 
 def show_derivation(derivation: Derivation, seconds: float, written: Mapping[str, str], console: Console) -> None:
@@ -30,7 +30,7 @@ def show_derivation(derivation: Derivation, seconds: float, written: Mapping[str
         lengths = [len(step.terms) for step in derivation.steps]
         table.add_row("steps", "named on the way", *_counts(lengths))
     for name, derived in derivation.quantities.items():
-        table.add_row(name, SUBJECTS[name].meaning, *_counts([len(terms) for terms in derived.terms.values()]))
+        table.add_row(name, QUANTITIES[name].meaning, *_counts([len(terms) for terms in derived.terms.values()]))
     console.print(table)
     console.print(Text(f"{derivation.count():,} terms in all ({seconds:.1f} s)"))
     for format_name, target in written.items():

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 
 from rttrr_pin.core.model import Model
-from rttrr_pin.derivation import SUBJECTS, Derivation
+from rttrr_pin.derivation import QUANTITIES, Derivation
 
 TITLES = {
     "v_dot_C": "Accelerations of the centres of mass",
@@ -61,7 +61,7 @@ def conventions(derivation: Derivation) -> Iterator[str]:
 
 def heading(derivation: Derivation, name: str) -> str:
     """What a quantity is, with its unit."""
-    subject = SUBJECTS[name]
+    subject = QUANTITIES[name]
     meaning = subject.meaning[0].upper() + subject.meaning[1:]
     return f"{meaning} [{subject.unit}]." + (" It is symmetric; the upper half is shown." if name == "M" else "")
 

@@ -1,7 +1,7 @@
-"""What it takes to turn a printed term into a derived one: which slips, and how much they weigh.
+"""What it takes to turn a printed term into a derived one: which errors, and how much they weigh.
 
-A pairing of printed with derived terms is judged by the total of these weights, so they say how slips happen: a dot,
-a sign, a number or one letter goes wrong easily; two letters in one term hardly ever do; beyond that it is rather
+A pairing of printed with derived terms is judged by the total of these weights, so they say how errors happen: a dot,
+a sign, a number or one symbol goes wrong easily; two symbols in one term hardly ever do; beyond that it is rather
 another term, printed in excess, and one that is missing.
 """
 
@@ -36,7 +36,7 @@ WEIGHT: Mapping[Kind, float] = {
     Kind.EXTRA: 1.2,
     Kind.MISSING: 1.2,
 }
-"""The weight of one slip of each kind."""
+"""The weight of one error of each kind."""
 
 LIMIT = WEIGHT[Kind.EXTRA] + WEIGHT[Kind.MISSING]
 """From this weight on, two terms have nothing to do with each other."""
@@ -44,18 +44,18 @@ LIMIT = WEIGHT[Kind.EXTRA] + WEIGHT[Kind.MISSING]
 REACH = 6
 """Products that differ in more factors than this have nothing to do with each other."""
 
-POWER, SECOND_LETTER, LOST_LETTER = 1.2, 1.3, 1.4
-"""The weight of a rate's power lost or added; of each of two letters exchanged; of a letter lost or added."""
+POWER, SECOND_SYMBOL, LOST_SYMBOL = 1.2, 1.3, 1.4
+"""The weight of a rate's power lost or added; of each of two symbols exchanged; of a symbol lost or added."""
 
 DOTS: Mapping[Role, int] = {Role.COORDINATE: 0, Role.RATE: 1, Role.ACCELERATION: 2}
 """How many dots a symbol of each role carries."""
 
-Slips = tuple[tuple[Kind, ...], float]
+Errors = tuple[tuple[Kind, ...], float]
 """What went wrong, and the weight of it."""
 
 
-def between_numbers(printed: Fraction, derived: Fraction) -> Slips:
-    """The slips between two coefficients."""
+def between_numbers(printed: Fraction, derived: Fraction) -> Errors:
+    """The errors between two coefficients."""
     kinds: tuple[Kind, ...] = ()
     if printed * derived < 0:
         kinds += (Kind.SIGN,)
@@ -64,13 +64,13 @@ def between_numbers(printed: Fraction, derived: Fraction) -> Slips:
     return kinds, sum(WEIGHT[kind] for kind in kinds)
 
 
-def between_factors(printed: Factors, derived: Factors, symbols: Mapping[str, Symbol]) -> Slips | None:
-    """The slips between two products of symbols.
+def between_factors(printed: Factors, derived: Factors, symbols: Mapping[str, Symbol]) -> Errors | None:
+    """The errors between two products of symbols.
 
     Args:
         printed: the factors as printed.
         derived: the factors that are right.
-        symbols: what the names stand for.
+        symbols: by name.
 
     Returns:
         None where the products have too little in common.
@@ -84,8 +84,8 @@ def between_factors(printed: Factors, derived: Factors, symbols: Mapping[str, Sy
     if wrong and right:
         exchanged = max(len(wrong), len(right))
         one = exchanged == 1 and wrong.total() == right.total()
-        weight += WEIGHT[Kind.SYMBOL] if one else SECOND_LETTER * exchanged
-        weight += 0 if one else LOST_LETTER * abs(wrong.total() - right.total())
+        weight += WEIGHT[Kind.SYMBOL] if one else SECOND_SYMBOL * exchanged
+        weight += 0 if one else LOST_SYMBOL * abs(wrong.total() - right.total())
         kinds += (Kind.SYMBOL,) * exchanged
         if one and _other_dots(symbols[next(iter(wrong))], symbols[next(iter(right))]):
             weight += WEIGHT[Kind.RATE]
@@ -93,31 +93,31 @@ def between_factors(printed: Factors, derived: Factors, symbols: Mapping[str, Sy
     for name, power in (wrong or right).items() if not (wrong and right) else ():
         rate = symbols[name].role in DOTS and name in kept
         kinds += (Kind.RATE,) if rate else (Kind.SYMBOL,)
-        weight += POWER if rate and power == 1 else LOST_LETTER * power
+        weight += POWER if rate and power == 1 else LOST_SYMBOL * power
     return (kinds, weight) if weight < LIMIT else None
 
 
-def _dots(wrong: Counter[str], right: Counter[str], symbols: Mapping[str, Symbol]) -> Slips:
+def _dots(wrong: Counter[str], right: Counter[str], symbols: Mapping[str, Symbol]) -> Errors:
     """Dots too few or too many: what is left of a coordinate on both sides; takes it out of both counters."""
     kinds: tuple[Kind, ...] = ()
     weight = 0.0
     moving = {symbols[name].index for name in wrong if symbols[name].role in DOTS}
     for index in sorted(moving):
-        mine, theirs = ([name for name in side if _moves(symbols[name], index)] for side in (wrong, right))
-        if not theirs:
+        printed, derived = ([name for name in side if _moves(symbols[name], index)] for side in (wrong, right))
+        if not derived:
             continue
         weight += WEIGHT[Kind.RATE]
-        if len(mine) > 1 or len(theirs) > 1 or wrong[mine[0]] != right[theirs[0]]:
+        if len(printed) > 1 or len(derived) > 1 or wrong[printed[0]] != right[derived[0]]:
             weight += POWER - WEIGHT[Kind.RATE]
         kinds += (Kind.RATE,)
-        for name in (*mine, *theirs):
+        for name in (*printed, *derived):
             wrong.pop(name, None)
             right.pop(name, None)
     return kinds, weight
 
 
 def _other_dots(one: Symbol, other: Symbol) -> bool:
-    """Whether two letters are of different coordinates and carry another number of dots."""
+    """Whether two symbols are of different coordinates and carry another number of dots."""
     return one.role in DOTS and other.role in DOTS and one.role is not other.role
 
 

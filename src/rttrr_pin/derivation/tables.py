@@ -1,4 +1,4 @@
-"""Files of equations as tables: TOML or YAML in, checked entries out; what is wrong is said with its place."""
+"""Files of symbols and equations as tables: TOML or YAML in, checked entries out; errors name the place."""
 
 from __future__ import annotations
 
@@ -87,13 +87,13 @@ class Table:
 
     def tables(self, key: str, place: str = "") -> list[Table]:
         """A list of tables within."""
-        found = []
+        tables = []
         for k, entries in enumerate(self.get(key, list, []), start=1):
             if not isinstance(entries, dict):
                 raise self.error(f"entry {k} of {key} is {entries!r}: expected a table, [[{key}]]")
             number = entries.get("number", k)
-            found.append(Table(self.source, f"{place or key} {number}", entries))
-        return found
+            tables.append(Table(self.source, f"{place or key} {number}", entries))
+        return tables
 
 
 _WORDS: Mapping[type, str] = {

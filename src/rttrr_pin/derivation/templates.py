@@ -1,4 +1,4 @@
-"""Symbols by the dozen: `{}^<i>r_{C_{<i><x>}}` stands for that of every link and axis."""
+"""Declarations of symbols with placeholders: `{}^<i>r_{C_{<i><x>}}` stands for that of every link and axis."""
 
 from __future__ import annotations
 
@@ -7,8 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 
-from rttrr_pin.auditing.tables import Table
-from rttrr_pin.derivation.chain import AXES
+from rttrr_pin.derivation.symbolic_robot import AXES
 from rttrr_pin.derivation.symbols import (
     ACCELERATION,
     FORCE,
@@ -21,6 +20,7 @@ from rttrr_pin.derivation.symbols import (
     Role,
     Symbol,
 )
+from rttrr_pin.derivation.tables import Table
 
 DIMENSIONS: Mapping[str, Dimension] = {
     "number": NUMBER,
@@ -43,13 +43,13 @@ KEYS = ("name", "latex", "dimension", "equal", "i", "k")
 
 
 @dataclass(frozen=True, slots=True)
-class Letter:
+class Declaration:
     """A symbol as a table declares it.
 
     Attributes:
         symbol: the symbol.
         spellings: how it is printed; corrections use the first.
-        equal: the name of the letter that it is equal to, as J_yx is to J_xy; empty for most.
+        equal: the name of the symbol that it is equal to, as J_yx is to J_xy; empty for most.
     """
 
     symbol: Symbol
@@ -57,12 +57,12 @@ class Letter:
     equal: str = ""
 
 
-def letters_in(table: Table, links: int, latex: bool = True) -> Iterator[Letter]:
+def declarations(table: Table, links: int, latex: bool = True) -> Iterator[Declaration]:
     """The symbols that an entry of [[symbol]] stands for.
 
     Args:
         table: the entry.
-        links: how many links `<i>` runs over.
+        links: the number of links that `<i>` runs over.
         latex: whether spellings are LaTeX.
 
     Raises:
@@ -85,7 +85,7 @@ def letters_in(table: Table, links: int, latex: bool = True) -> Iterator[Letter]
             )
         printed = tuple(dict.fromkeys(filled(spelling, values, latex) for spelling in spellings))
         symbol = Symbol(identifier, printed[0], Role.PARAMETER, DIMENSIONS[dimension])
-        yield Letter(symbol, printed, filled(table.get("equal", str, ""), values))
+        yield Declaration(symbol, printed, filled(table.get("equal", str, ""), values))
 
 
 def _combinations(table: Table, texts: Sequence[str], links: int) -> Iterator[dict[str, str]]:

@@ -1,4 +1,4 @@
-"""A robot in symbols: which letter stands for which of its numbers, and the specification's inputs made of them."""
+"""A robot in symbols: which symbol stands for which of its numbers, and the inputs of the recursion made of them."""
 
 from __future__ import annotations
 
@@ -23,9 +23,9 @@ from rttrr_pin.derivation.symbols import (
     MASS,
     MOMENT,
     Dimension,
+    Expression,
     Role,
     Symbol,
-    Terms,
 )
 
 Slot = tuple[str | int, ...]
@@ -33,7 +33,7 @@ Slot = tuple[str | int, ...]
 payload ("force", x), ("moment", x); links and joints i from 0, axes x, y of 0, 1, 2."""
 
 Named = tuple[Symbol, int, tuple[Slot, ...]]
-"""A letter, its sign (1, or -1 where it stands for minus the number), and the numbers that it stands for."""
+"""A symbol, its sign (1, or -1 where it stands for minus the number), and the numbers that it stands for."""
 
 SLOT_DIMENSION: Mapping[str, Dimension] = {
     "mass": MASS,
@@ -53,17 +53,17 @@ RIGHT_ANGLE_ERROR = 1e-4
 
 
 @dataclass(frozen=True)
-class Letters:
+class ParameterSymbols:
     """What stands for the numbers of a robot.
 
     Attributes:
-        symbols: the letters.
-        slots: for some numbers, the polynomial in these letters; a number without one stays a number.
-        values: of each letter, as the robot has it.
+        symbols: by which numbers are called.
+        slots: for some numbers, the polynomial in these symbols; a number without one stays a number.
+        values: of each symbol, as the robot has it.
     """
 
     symbols: tuple[Symbol, ...] = ()
-    slots: Mapping[Slot, Terms] = field(default_factory=dict)
+    slots: Mapping[Slot, Expression] = field(default_factory=dict)
     values: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -72,8 +72,8 @@ class SymbolicRobot:
     """A robot whose numbers are polynomials in symbols.
 
     Attributes:
-        model: the structure, and the numbers that the letters stand for.
-        letters: which letter stands for which number.
+        model: the structure, and the numbers that the symbols stand for.
+        parameters: which symbol stands for which number.
         payload_link: index of the link that the payload acts at; None: there is no payload.
         right_angles: whether an entry of a rotation within 1e-4 of 0, 1 or -1 is read as that number: files write
             1.5708 where they mean a right angle.
@@ -81,15 +81,15 @@ class SymbolicRobot:
     """
 
     model: Model
-    letters: Letters
+    parameters: ParameterSymbols
     payload_link: int | None = None
     right_angles: bool = False
     steps: tuple[Symbol, ...] = ()
 
     @cached_property
     def ring(self) -> Ring:
-        """The polynomials in all symbols: coordinates, rates, accelerations, sines, cosines, letters, steps."""
-        return Ring([*self.motion, *self.letters.symbols, *self.steps])
+        """The polynomials in all symbols: coordinates, rates, accelerations, sines, cosines, parameters, steps."""
+        return Ring([*self.motion, *self.parameters.symbols, *self.steps])
 
     @cached_property
     def motion(self) -> tuple[Symbol, ...]:
@@ -125,7 +125,7 @@ class SymbolicRobot:
         return [Payload(self.payload_link, force, moment)]
 
     def bodies(self) -> list[Body]:
-        """The links with their joints, as the specification takes them."""
+        """The links with their joints, as the recursion takes them."""
         return [self._body(i, *pair) for i, pair in enumerate(zip(self.model.joints, self.model.links, strict=True))]
 
     def sincos(self, angle: Scalar) -> tuple[Polynomial, Polynomial]:
@@ -158,8 +158,8 @@ class SymbolicRobot:
         return Vector(*(self._number((kind, *place, x), float(value)) for x, value in enumerate(values)))
 
     def _number(self, slot: Slot, value: float) -> Scalar:
-        if slot in self.letters.slots:
-            return self.ring.polynomial(self.letters.slots[slot])
+        if slot in self.parameters.slots:
+            return self.ring.polynomial(self.parameters.slots[slot])
         return exact(value) if value else 0
 
     def _direction(self, value: float) -> Scalar:
@@ -182,11 +182,9 @@ def almost_right_angles(model: Model) -> int:
     return sum(ROTATION_ERROR < error <= RIGHT_ANGLE_ERROR for error in errors)
 
 
-def parameter(slot: Slot, name: str, latex: str) -> Symbol:
-    """The symbol for a number of the robot."""
-    kind = str(slot[0])
-    role = {"gravity": Role.GRAVITY, "force": Role.PAYLOAD, "moment": Role.PAYLOAD}.get(kind, Role.PARAMETER)
-    return Symbol(name, latex, role, SLOT_DIMENSION[kind])
+def role_of(slot: Slot) -> Role:
+    """What the symbol for a number of the robot stands for."""
+    return {"gravity": Role.GRAVITY, "force": Role.PAYLOAD, "moment": Role.PAYLOAD}.get(str(slot[0]), Role.PARAMETER)
 
 
 def value_of_slot(model: Model, slot: Slot) -> float:
@@ -204,40 +202,40 @@ def value_of_slot(model: Model, slot: Slot) -> float:
     return float(model.gravity[i[0]]) if kind == "gravity" else 0.0
 
 
-def letters_of(model: Model, named: Iterable[Named]) -> Letters:
-    """The letters that stand each for one number of a robot, in one place or in several.
+def symbols_of(model: Model, named: Iterable[Named]) -> ParameterSymbols:
+    """The symbols that stand each for one number of a robot, in one place or in several.
 
     Args:
         model: the robot.
-        named: for each letter its symbol, its sign (1, or -1 where it stands for minus the number), and the slots.
+        named: for each its symbol, its sign (1, or -1 where it stands for minus the number), and the slots.
     """
     symbols: list[Symbol] = []
-    slots: dict[Slot, Terms] = {}
+    slots: dict[Slot, Expression] = {}
     values: dict[str, float] = {}
     for symbol, sign, places in named:
         symbols.append(symbol)
         values[symbol.name] = sign * value_of_slot(model, places[0])
         for slot in places:
             slots[slot] = {((symbol.name, 1),): Fraction(sign)}
-    return Letters(tuple(symbols), slots, values)
+    return ParameterSymbols(tuple(symbols), slots, values)
 
 
-def default_letters(model: Model, payload_link: int | None = None) -> Letters:
-    """Letters for a robot's numbers that are not zero, after the paper's: M, r_C, J*, and p for the joints' origins.
+def default_symbols(model: Model, payload_link: int | None = None) -> ParameterSymbols:
+    """Symbols for a robot's numbers that are not zero, after the paper's: M, r_C, J*, and p for the joints' origins.
 
     The payload is named after its link. J_xy, J_xz, J_yz are minus the matrix elements, as the paper has them.
     """
-    named = [*_link_letters(model), *_gravity_letters()]
+    named = [*_link_symbols(model), *_gravity_symbols()]
     used = [letter for letter in named if value_of_slot(model, letter[2][0])]
-    return letters_of(model, [*used, *_payload_letters(payload_link)])
+    return symbols_of(model, [*used, *_payload_symbols(payload_link)])
 
 
-def payload_letters(model: Model, payload_link: int | None) -> Letters:
-    """Letters for the payload alone: the robot's own numbers stay numbers."""
-    return letters_of(model, _payload_letters(payload_link))
+def payload_symbols(model: Model, payload_link: int | None) -> ParameterSymbols:
+    """Symbols for the payload alone: the robot's own numbers stay numbers."""
+    return symbols_of(model, _payload_symbols(payload_link))
 
 
-def _link_letters(model: Model) -> Iterator[Named]:
+def _link_symbols(model: Model) -> Iterator[Named]:
     for i in range(len(model.links)):
         link, up = i + 1, f"{{}}^{index(i + 1)}"
         for x, axis in enumerate(AXES):
@@ -253,13 +251,13 @@ def _link_letters(model: Model) -> Iterator[Named]:
             yield _letter(places, f"J_{link}{pair}", f"{up}J_{{{pair}}}^*", -1)
 
 
-def _gravity_letters() -> Iterator[Named]:
+def _gravity_symbols() -> Iterator[Named]:
     for x, axis in enumerate(AXES):
         letter = "g" if axis == "z" else f"g_{axis}"
         yield _letter((("gravity", x),), letter, letter, -1)
 
 
-def _payload_letters(link: int | None) -> Iterator[Named]:
+def _payload_symbols(link: int | None) -> Iterator[Named]:
     if link is None:
         return
     up = f"{{}}^{index(link + 1)}"
@@ -269,4 +267,4 @@ def _payload_letters(link: int | None) -> Iterator[Named]:
 
 
 def _letter(slots: tuple[Slot, ...], identifier: str, latex: str, sign: int = 1) -> Named:
-    return parameter(slots[0], identifier, latex), sign, slots
+    return Symbol(identifier, latex, role_of(slots[0]), SLOT_DIMENSION[str(slots[0][0])]), sign, slots

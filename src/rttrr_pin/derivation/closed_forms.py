@@ -10,8 +10,8 @@ from rttrr_pin.core.dynamics import Result, dynamics
 from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.newton_euler import Keep
 from rttrr_pin.core.scalars import Arithmetic
-from rttrr_pin.derivation.chain import SymbolicRobot
 from rttrr_pin.derivation.ring import Polynomial, exact
+from rttrr_pin.derivation.symbolic_robot import SymbolicRobot
 
 
 @dataclass(frozen=True)

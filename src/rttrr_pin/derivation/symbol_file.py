@@ -1,0 +1,287 @@
+"""Files of symbols: a robot whose numbers have names, from `[robot]`, `[[link]]`, `[[symbol]]`, `[payload]`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from rttrr_pin.core.joint import Joint
+from rttrr_pin.core.model import Model
+from rttrr_pin.derivation.expressions import read_expression
+from rttrr_pin.derivation.frame_table import ENTRIES, joint_motion, model_of
+from rttrr_pin.derivation.ring import evaluate
+from rttrr_pin.derivation.symbolic_robot import (
+    AXES,
+    SLOT_DIMENSION,
+    ParameterSymbols,
+    Slot,
+    SymbolicRobot,
+    role_of,
+    value_of_slot,
+)
+from rttrr_pin.derivation.symbols import INERTIA, LENGTH, MASS, NUMBER, Dimension, Expression, Symbol
+from rttrr_pin.derivation.tables import Table, read_table
+from rttrr_pin.derivation.templates import Declaration, declarations
+from rttrr_pin.errors import InputError, RttrrError
+from rttrr_pin.loading import load
+
+PUBLISHED = Path(__file__).parent / "data"
+"""Files of symbols of bundled robots, by the robot's name."""
+
+SYMBOL_KEYS = ("robot", "payload", "link", "symbol", "values", "preface")
+ROBOT_KEYS = ("urdf", "gravity")
+LINK_KEYS = ("name", "parent", "joint", "origin", "rpy_degrees", "mass", "com", "inertia")
+
+USUAL: Mapping[Dimension, float] = {LENGTH: 0.3, MASS: 2.0, INERTIA: 0.1}
+"""The size of a symbol's number where no file and no [values] give it."""
+
+SAME = 1e-9
+"""Relative difference within which a number of a URDF is what the table of frames says: files are rounded."""
+
+
+@dataclass(frozen=True)
+class PublishedSymbols:
+    """A robot in the symbols of a publication.
+
+    Attributes:
+        robot: the robot, with a number for each symbol.
+        spellings: the name of the symbol that each spelling stands for; of several spellings the first is preferred.
+        aliases: names of symbols that are equal to another, as J_yx is to J_xy, with the name of that other.
+        preface: a paragraph that stands before what is derived in these symbols.
+    """
+
+    robot: SymbolicRobot
+    spellings: Mapping[str, str]
+    aliases: Mapping[str, str]
+    preface: str = ""
+
+
+def published_symbols(robot: str, model: Model, payload_link: int | None) -> PublishedSymbols | None:
+    """The published symbols of a bundled robot; None where there are none, or they do not fit the robot as loaded."""
+    path = PUBLISHED / f"{robot}.toml"
+    if not path.is_file():
+        return None
+    try:
+        symbols = read_symbols(read_table(path), path, latex=True, model=model)
+    except RttrrError:
+        return None
+    return symbols if symbols.robot.payload_link == payload_link else None
+
+
+def read_symbols(file: Table, path: Path, latex: bool, model: Model | None = None) -> PublishedSymbols:
+    """The robot of a file of symbols.
+
+    Args:
+        file: the tables [robot], [[link]], [[symbol]], [payload], [values].
+        path: of the file; its URDF is looked for beside it.
+        latex: whether spellings are LaTeX.
+        model: of the URDF, where it is loaded already.
+
+    Raises:
+        EquationError: the tables do not fit each other, or the URDF.
+        UrdfError: the URDF cannot be used.
+    """
+    about = file.table("robot").only(ROBOT_KEYS)
+    links = file.tables("link", "[[link]]")
+    declared, spellings = _declared(file, sum("mass" in link.entries for link in links), latex)
+    aliases = {name: one.equal for name, one in declared.items() if one.equal}
+    wrong = [equal for equal in aliases.values() if equal not in declared or equal in aliases]
+    if wrong:
+        raise file.error(f"a symbol is said to be equal to {wrong[0]!r}: expected the name of another symbol")
+    symbols = [one.symbol for name, one in declared.items() if name not in aliases]
+    slots = dict(_slots(links, about, [symbol.name for symbol in symbols]))
+    values = _given_values(file, symbols)
+    if model is not None or "urdf" in about.entries:
+        model = _checked(model or load(_beside(path, about.get("urdf", str))).model, links)
+        slots = {
+            _moved(slot, [model.link_index(link.get("name", str)) for link in links]): x for slot, x in slots.items()
+        }
+        values = _values_in(model, slots, values, about)
+    else:
+        if not links:
+            raise about.error('names no URDF, and there is no [[link]]: give urdf = "arm.urdf", or a [[link]] for each')
+        values = _usual(symbols, slots) | values
+        model = model_of(
+            links, lambda slot: float(evaluate(slots[slot], values)) if slot in slots else 0.0, ("gravity", 0) in slots
+        )
+    payload_link, payload = _payload(file.table("payload").only(("link", "force", "moment")), model, symbols)
+    slots |= payload
+    _check_dimensions(slots, symbols, file)
+    roles = {name: role_of(slot) for slot, x in slots.items() for factors in x for name, _ in factors}
+    idle = [symbol.name for symbol in symbols if symbol.name not in roles]
+    if idle:
+        raise file.error(f"symbol {idle[0]!r} stands for no number: use it in [robot], [[link]] or [payload]")
+    chosen = tuple(replace(symbol, role=roles[symbol.name]) for symbol in symbols)
+    parameters = ParameterSymbols(chosen, slots, {symbol.name: values.get(symbol.name, 0.0) for symbol in chosen})
+    preface = " ".join(file.get("preface", str, "").split())
+    return PublishedSymbols(SymbolicRobot(model, parameters, payload_link), spellings, aliases, preface)
+
+
+def spell(spellings: dict[str, str], printed: Sequence[str], name: str, table: Table) -> None:
+    """Add spellings of a symbol; one that another symbol has would silently be read as either."""
+    for spelling in printed:
+        other = spellings.setdefault(spelling, name)
+        if other != name:
+            raise table.error(f"{spelling!r} is to be {name!r}, and is {other!r} already: spell them differently")
+
+
+def _declared(file: Table, links: int, latex: bool) -> tuple[dict[str, Declaration], dict[str, str]]:
+    """The declared symbols by name, and the name of each spelling."""
+    declared: dict[str, Declaration] = {}
+    spellings: dict[str, str] = {}
+    for table in file.tables("symbol", "[[symbol]]"):
+        for one in declarations(table, links, latex):
+            name = one.symbol.name
+            if name in declared:
+                raise table.error(f"symbol {name!r} is declared twice: leave one")
+            declared[name] = one
+            spell(spellings, one.spellings, name, table)
+    return declared, spellings
+
+
+def _given_values(file: Table, symbols: Sequence[Symbol]) -> dict[str, float]:
+    table = file.table("values")
+    values = {name: table.get(name, float) for name in table.entries}
+    for name, value in values.items():
+        if name not in {symbol.name for symbol in symbols}:
+            raise table.error(f"{name!r} is no symbol: declare it in [[symbol]]")
+        if not math.isfinite(value):
+            raise table.error(f"{name} is {value}: expected a finite number")
+    return values
+
+
+def _beside(path: Path, name: str) -> str:
+    """A file beside another; where there is none, the name is what `load` takes."""
+    return str(path.parent / name) if (path.parent / name).is_file() else name
+
+
+def _slots(links: Sequence[Table], about: Table, names: Sequence[str]) -> Iterator[tuple[Slot, Expression]]:
+    """The expression of each number that the tables state; links by their position in the table."""
+    for i, link in enumerate(links):
+        link.only(LINK_KEYS)
+        read = _reader(link, names)
+        if "mass" in link.entries:
+            yield ("mass", i), read(link.texts("mass", 1)[0])
+        for key in ("origin", "com"):
+            if key in link.entries:
+                for x, text in enumerate(link.texts(key, 3)):
+                    yield (key, i, x), read(text)
+        if "inertia" in link.entries:
+            for (x, y), text in zip(ENTRIES, link.texts("inertia", 6), strict=True):
+                yield ("inertia", i, x, y), read(text)
+                yield ("inertia", i, y, x), read(text)
+    if "gravity" in about.entries:
+        for x, text in enumerate(about.texts("gravity", 3)):
+            yield ("gravity", x), _reader(about, names)(text)
+
+
+def _reader(table: Table, names: Sequence[str]) -> Callable[[str], Expression]:
+    """Reads expressions in these symbols; what is wrong is said with the table's place."""
+
+    def read(text: str) -> Expression:
+        try:
+            return read_expression(text, names)
+        except InputError as error:
+            raise table.error(str(error)) from error
+
+    return read
+
+
+def _payload(table: Table, model: Model, symbols: Sequence[Symbol]) -> tuple[int | None, dict[Slot, Expression]]:
+    """The link that the payload acts at, and its expressions."""
+    if not table.entries:
+        return None, {}
+    name = table.get("link", str, model.links[-1].name)
+    if name not in model.link_names:
+        raise table.error(f"link is {name!r}: expected one of {', '.join(model.link_names)}")
+    read = _reader(table, [symbol.name for symbol in symbols])
+    texts = {key: table.texts(key, 3, ("0", "0", "0")) for key in ("force", "moment")}
+    return model.link_index(name), {(key, x): read(text) for key, row in texts.items() for x, text in enumerate(row)}
+
+
+def _check_dimensions(slots: Mapping[Slot, Expression], symbols: Sequence[Symbol], file: Table) -> None:
+    """Each symbol may stand only for what it measures; a bare number has the unit of its place."""
+    dimensions = {symbol.name: symbol.dimension for symbol in symbols}
+    for slot, expression in slots.items():
+        wanted = SLOT_DIMENSION[str(slot[0])]
+        for factors in expression:
+            got = NUMBER
+            for name, power in factors:
+                got = got.times(dimensions[name], power)
+            if factors and got != wanted:
+                shown = " ".join(f"{name}^{power}" if power > 1 else name for name, power in factors)
+                raise file.error(f"{slot[0]} has {shown}, which measures {got}: expected {wanted}")
+
+
+def _checked(model: Model, links: Sequence[Table]) -> Model:
+    """The model of a URDF, once the table of frames agrees with it."""
+    for link in links:
+        name = link.get("name", str)
+        if name not in model.link_names:
+            raise link.error(f"the URDF has no link {name!r}: it has {', '.join(model.link_names)}")
+        if "joint" in link.entries:
+            joint = model.joints[model.link_index(name)]
+            if not _moves_so(joint, *joint_motion(link)):
+                axis = f" about or along {joint.axis.tolist()}" if joint.nv else ""
+                raise link.error(
+                    f"joint is {link.entries['joint']!r}; in the URDF {joint.name} is {joint.type.name}{axis}"
+                )
+    return model
+
+
+def _moves_so(joint: Joint, motion: str, axis: tuple[float, ...]) -> bool:
+    same = joint.type.name == motion or (motion == "revolute" and joint.type.rotates)
+    return same and (motion == "fixed" or tuple(float(x) for x in joint.axis) == axis)
+
+
+def _moved(slot: Slot, places: Sequence[int]) -> Slot:
+    """A slot whose link is counted as in the model."""
+    return slot if slot[0] == "gravity" else (slot[0], places[int(slot[1])], *slot[2:])
+
+
+def _values_in(
+    model: Model, slots: Mapping[Slot, Expression], given: Mapping[str, float], about: Table
+) -> dict[str, float]:
+    """The number of each symbol as the URDF has it, once all expressions are shown to hold there."""
+    values = dict(given)
+    for slot, expression in slots.items():
+        if len(expression) == 1:
+            ((factors, coefficient),) = expression.items()
+            if len(factors) == 1 and factors[0][1] == 1 and factors[0][0] not in values:
+                values[factors[0][0]] = value_of_slot(model, slot) / float(coefficient)
+    for slot, expression in slots.items():
+        missing = [name for factors in expression for name, _ in factors if name not in values]
+        if missing:
+            raise about.error(f"no number of the URDF tells {missing[0]!r}: give it in [values]")
+        here, there = float(evaluate(expression, values)), value_of_slot(model, slot)
+        if not math.isclose(here, there, rel_tol=SAME, abs_tol=SAME * SAME):
+            raise about.error(
+                f"{_slot_name(model, slot)} is {there} in the URDF and {here} by the tables: one is wrong"
+            )
+    return values
+
+
+def _slot_name(model: Model, slot: Slot) -> str:
+    place = [int(x) for x in slot[1:]]
+    if slot[0] == "gravity":
+        return f"gravity {AXES[place[0]]}"
+    axes = "".join(AXES[x] for x in place[1:])
+    return " ".join(filter(None, (str(slot[0]), axes, "of", model.links[place[0]].name)))
+
+
+def _usual(symbols: Sequence[Symbol], slots: Mapping[Slot, Expression]) -> dict[str, float]:
+    """Numbers for symbols that nobody gave: of a usual size, all different; products of inertia small."""
+    mixed = {
+        name
+        for slot, expression in slots.items()
+        if slot[0] == "inertia" and slot[2] != slot[3]
+        for factors in expression
+        for name, _ in factors
+    }
+    values = {}
+    for k, symbol in enumerate(symbols):
+        size = 9.81 if symbol.name == "g" else USUAL.get(symbol.dimension, 1.0) * (1 + ((7 * k) % 23) / 100)
+        values[symbol.name] = size / 10 if symbol.name in mixed else size
+    return values
