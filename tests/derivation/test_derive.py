@@ -255,7 +255,7 @@ def test_lines_fit_the_page_and_braces_balance(case: tuple[str, str, str]) -> No
 
 def test_a_robot_without_symbols_has_no_table_of_them() -> None:
     """TeX takes no table without rows."""
-    still = symbolic.derive(rttrr_pin.load(EXAMPLES["no-joint"]), ["N", "M"], letters=symbolic.ParameterSymbols())
+    still = symbolic.derive(rttrr_pin.load(EXAMPLES["no-joint"]), ["N", "M"], parameters=symbolic.ParameterSymbols())
     assert r"\begin{longtable}" not in WRITERS["latex"](still)
     assert r"\begin{longtable}" in written(CASES[0], "latex")
 
