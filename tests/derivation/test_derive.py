@@ -28,6 +28,7 @@ from rttrr_pin.core.payload import Load
 from rttrr_pin.derivation import forms
 from rttrr_pin.derivation.closed_forms import closed_forms
 from rttrr_pin.derivation.collect import Presenter
+from rttrr_pin.derivation.latex import latex_number
 from rttrr_pin.derivation.model_terms import model_terms, names
 from rttrr_pin.derivation.motion import angles
 from rttrr_pin.derivation.ring import Ring, exact
@@ -429,6 +430,15 @@ def test_auto_counts_all_that_is_asked_for(monkeypatch: pytest.MonkeyPatch) -> N
     assert symbolic.derive(robot("rttrr"), ["tau", "n"]).form == "stepwise"
 
 
+def test_the_data_are_the_polynomials() -> None:
+    derivation = symbolic.derive(robot("rttrr"), ["g"], "stepwise")
+    data = derivation.to_dict()
+    assert data["schema"] == 1 and derivation.passed and "rttrr: g" in derivation.summary()
+    for entry in data["quantities"]["g"]:
+        terms = {tuple(sorted(x["powers"].items())): Fraction(x["coefficient"]) for x in entry["terms"]}
+        assert terms == derivation.quantities["g"].terms[entry["index"]]
+
+
 def test_a_step_needs_only_steps_before_it_and_none_is_idle() -> None:
     derivation = derived("tree-with-followers", "stepwise", "letters")
     seen = set(derivation.symbols) - {step.symbol.name for step in derivation.steps}
@@ -550,9 +560,9 @@ def test_common_factors_stand_in_front() -> None:
 
 def test_numbers_are_read_back_as_the_same_float() -> None:
     for x in (0.1, 1e-7, 123456.789, 2.5e20, 1 / 3, 7.02475):
-        latex = mathematics.number(Fraction(x)).replace(r" \cdot 10^{", "e").rstrip("}")
+        latex = latex_number(Fraction(x)).replace(r" \cdot 10^{", "e").rstrip("}")
         assert float(latex) == x
-    assert mathematics.number(Fraction(1, 2)) == r"\frac{1}{2}"
+    assert latex_number(Fraction(1, 2)) == r"\frac{1}{2}"
 
 
 def test_the_estimated_width_is_not_below_the_true_one() -> None:

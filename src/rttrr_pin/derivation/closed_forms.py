@@ -1,4 +1,4 @@
-"""The specification run on symbols: the closed forms of v_dot_C, F, N, f, n and tau."""
+"""The recursion run on symbols: the closed forms of v_dot_C, F, N, f, n and tau."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ class TooLongError(Exception):
 
 
 def closed_forms(robot: SymbolicRobot, most_terms: int | None = None) -> ClosedForms:
-    """Run the specification on symbols.
+    """Run the recursion on symbols.
 
     Args:
         robot: the robot in symbols.

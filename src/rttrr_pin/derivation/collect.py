@@ -97,13 +97,13 @@ class Presenter:
         number, factors = ring.polynomial(terms).factor()
         if sum(power for _, power in factors) == 1:
             return Fraction(1), [terms]
-        total, found = Fraction(int(number.p), int(number.q)), []
+        total, sums = Fraction(int(number.p), int(number.q)), []
         for factor, power in factors:
-            share, _, rest = self._content(ring.terms(factor))
-            share, rest = self._upright(share, rest)
-            total *= share**power
-            found += [rest] * power
-        return total, sorted(found, key=lambda x: [self._order(factors) for factors in sorted(x, key=self._order)])
+            content, _, rest = self._content(ring.terms(factor))
+            content, rest = self._upright(content, rest)
+            total *= content**power
+            sums += [rest] * power
+        return total, sorted(sums, key=lambda x: [self._order(factors) for factors in sorted(x, key=self._order)])
 
     def _upright(self, number: Fraction, terms: Expression) -> tuple[Fraction, Expression]:
         """The same product, the first term of the sum positive."""

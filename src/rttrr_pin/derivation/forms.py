@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain
-from typing import Protocol
+from typing import Any, Protocol
 
 from rttrr_pin.core.algebra import Scalar, Vector
 from rttrr_pin.core.model import Model
@@ -66,23 +66,51 @@ class Derivation:
     @property
     def symbols(self) -> dict[str, Symbol]:
         """Every symbol that may occur, by name, in a fixed order."""
-        given = (*self.robot.motion, *self.robot.parameters.symbols, *(step.symbol for step in self.steps))
-        return {symbol.name: symbol for symbol in given}
+        symbols = (*self.robot.motion, *self.robot.parameters.symbols, *(step.symbol for step in self.steps))
+        return {symbol.name: symbol for symbol in symbols}
 
     @property
     def ring(self) -> Ring:
         """The polynomials in these symbols."""
         return Ring(self.symbols.values())
 
+    @property
+    def passed(self) -> bool:
+        """True: what was derived is right by construction; results of all features have this property."""
+        return True
+
     def count(self) -> int:
-        """How many terms there are in all."""
+        """The number of terms in all."""
         return sum(map(len, self.all_terms()))
+
+    def summary(self) -> str:
+        """Robot, form, quantities and length in one line."""
+        names = ", ".join(self.quantities)
+        return f"{self.robot.model.name}: {names} in {self.form} form ({self.reason}), {self.count():,} terms in all"
+
+    def to_dict(self) -> dict[str, Any]:
+        """The polynomials as data for JSON: of each term the coefficient, a fraction as text, and the powers."""
+        return {
+            "schema": 1,
+            "robot": self.robot.model.name,
+            "form": self.form,
+            "symbols": {name: symbol.latex for name, symbol in self.symbols.items()},
+            "steps": {step.symbol.name: _data(step.terms) for step in self.steps},
+            "quantities": {
+                name: [{"index": at, "terms": _data(terms)} for at, terms in derived.terms.items()]
+                for name, derived in self.quantities.items()
+            },
+        }
 
     def all_terms(self) -> Iterable[Expression]:
         """Every polynomial: of the steps, then of the entries."""
         yield from (step.terms for step in self.steps)
         for derived in self.quantities.values():
             yield from derived.terms.values()
+
+
+def _data(expression: Expression) -> list[dict[str, Any]]:
+    return [{"coefficient": str(x), "powers": dict(factors)} for factors, x in expression.items()]
 
 
 def derive(
@@ -146,11 +174,11 @@ def only_leaf(model: Model) -> int | None:
 def _expanded(robot: SymbolicRobot, quantities: Sequence[str], most_terms: int | None) -> Derivation:
     ring, forms = robot.ring, closed_forms(robot, most_terms)
     parts = model_terms(forms) if {"M", "C", "g"} & set(quantities) else None
-    found: dict[str, Sequence[Scalar]] = {}
+    entries: dict[str, Sequence[Scalar]] = {}
     for name in quantities:
         rows = getattr(forms if name in vars(forms) else parts, name)
-        found[name] = rows if QUANTITIES[name].extent is Extent.JOINTS else [x for row in rows for x in row]
-    derived = {name: _derived(robot.model, name, map(ring.terms, entries)) for name, entries in found.items()}
+        entries[name] = rows if QUANTITIES[name].extent is Extent.JOINTS else [x for row in rows for x in row]
+    derived = {name: _derived(robot.model, name, map(ring.terms, scalars)) for name, scalars in entries.items()}
     result = Derivation(robot, "expanded", "as asked for", (), derived)
     if most_terms is None:
         return result
@@ -162,7 +190,7 @@ def _expanded(robot: SymbolicRobot, quantities: Sequence[str], most_terms: int |
 def _stepwise(robot: SymbolicRobot, quantities: Sequence[str], reason: str) -> Derivation:
     runs = Stepwise(robot)
     motion = runs.motion()
-    made: dict[str, Callable[[], Iterable[Expression]]] = {
+    expressions: dict[str, Callable[[], Iterable[Expression]]] = {
         "v_dot_C": lambda: _flat(runs, runs.accelerations()),
         "F": lambda: _flat(runs, motion.F),
         "N": lambda: _flat(runs, motion.N),
@@ -173,7 +201,7 @@ def _stepwise(robot: SymbolicRobot, quantities: Sequence[str], reason: str) -> D
         "C": lambda: chain.from_iterable(runs.coriolis()),
         "g": runs.gravity,
     }
-    derived = {name: _derived(robot.model, name, made[name]()) for name in quantities}
+    derived = {name: _derived(robot.model, name, expressions[name]()) for name in quantities}
     results = [terms for quantity in derived.values() for terms in quantity.terms.values()]
     return Derivation(robot, "stepwise", reason, tuple(needed(runs.steps.values(), results)), derived)
 

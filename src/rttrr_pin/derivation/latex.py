@@ -1,4 +1,4 @@
-"""Products and sums of symbols as LaTeX, in the paper's letters and in its order: number, M, c, s, letters, rates."""
+"""Numbers, powers, products and sums as LaTeX, in the order of the paper: number, masses, parameters, c, s, rates."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
+from rttrr_pin.derivation.collect import SIMPLE
 from rttrr_pin.derivation.symbols import MASS, Factors, Role, Symbol
 
 ORDER: Mapping[Role, int] = {
@@ -28,15 +29,20 @@ FUNCTION = re.compile(r"(\\(cos|sin)(?![A-Za-z])|\\(mathrm|operatorname|text)\s*
 
 
 def latex_number(x: Fraction) -> str:
-    """A number without its sign: whole, a fraction of small numbers, or a decimal that rounds to the same double."""
+    """A number without its sign: whole, a simple fraction, or the shortest decimal of the same float64."""
     x = abs(x)
-    if x.denominator == 1 and x.numerator < 10**6:
+    if x.denominator == 1 and x.numerator < 10**15:
         return str(x.numerator)
-    if x.denominator <= 100 and x.numerator <= 100:
+    if x.denominator <= SIMPLE and x.numerator <= SIMPLE:
         return rf"\frac{{{x.numerator}}}{{{x.denominator}}}"
-    mantissa, _, exponent = repr(float(x)).partition("e")
-    mantissa = mantissa.removesuffix(".0")
-    return rf"{mantissa} \cdot 10^{{{int(exponent)}}}" if exponent else mantissa
+    return decimal(float(x))
+
+
+def decimal(x: float) -> str:
+    """The shortest decimal that is read back as the same float64."""
+    digits, _, exponent = repr(x).partition("e")
+    digits = digits.removesuffix(".0")
+    return rf"{digits} \cdot 10^{{{int(exponent)}}}" if exponent else digits
 
 
 def latex_power(symbol: Symbol, power: int) -> str:
@@ -47,7 +53,7 @@ def latex_power(symbol: Symbol, power: int) -> str:
     function = FUNCTION.match(symbol.latex) if symbol.role in (Role.SINE, Role.COSINE) else None
     if function:
         return function[0] + raised + symbol.latex[function.end() :]
-    if "^" in symbol.latex.removeprefix("{}^"):
+    if "^" in symbol.latex.removeprefix("{}^") or "(" in symbol.latex:
         return rf"\left({symbol.latex}\right){raised}"
     return symbol.latex + raised
 
@@ -70,7 +76,7 @@ def latex_sum(terms: Iterable[tuple[Fraction, Factors]], symbols: Mapping[str, S
 
 
 def in_order(factors: Factors, symbols: Mapping[str, Symbol]) -> Factors:
-    """The factors of a product as people write them: masses, other letters, cosines, sines, what moves."""
+    """The factors of a product as people write them: masses, other parameters, cosines, sines, what moves."""
 
     def place(factor: tuple[str, int]) -> tuple[bool, int, str]:
         symbol = symbols[factor[0]]

@@ -1,4 +1,4 @@
-"""The equation of motion taken apart: tau = M(q) a + C(q, v) v + g(q) + payload + friction of the drives.
+"""The equation of motion taken apart: tau = M(q) a + C(q, v) v + g(q) + payload + friction of the joints.
 
 All by differentiating the closed form of tau, which is linear in the accelerations and in the payload, and of second
 degree in the rates.
@@ -27,7 +27,7 @@ class ModelTerms:
         C: Coriolis and centrifugal matrix, (nv, nv): C v is what the rates take.
         g: what holds the robot still, (nv,).
         payload: what the payload takes, (nv,).
-        friction: damping and Coulomb friction of the drives, (nv,).
+        friction: damping and Coulomb friction of the joints, (nv,).
     """
 
     M: list[list[Polynomial]]

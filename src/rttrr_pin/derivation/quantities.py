@@ -97,7 +97,7 @@ QUANTITIES: Mapping[str, Quantity] = {
         JOINTS,
         "qva",
         True,
-        "driving force of each joint: the component of n or f along its axis, plus what the drive itself takes",
+        "driving force of each joint: the component of n or f along its axis, plus joint friction and armature",
         "N m or N",
         _of_joint(r"\tau"),
     ),

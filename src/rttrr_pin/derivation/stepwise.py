@@ -1,6 +1,6 @@
 """The recursion with its finished vectors named: short polynomials in names that came before, for any robot.
 
-The specification shows each finished w, w_dot, v_dot, F, N, f, n to `keep`; each component that is more than a letter
+The recursion shows each finished w, w_dot, v_dot, F, N, f, n to `keep`; each component that is more than a symbol
 is named there, and only its name goes on. M, C and g come from runs of their own, whose names carry a suffix:
 
     g(q)          no motion                       n_3x_g
@@ -27,7 +27,7 @@ from rttrr_pin.derivation.symbolic_robot import AXES, SymbolicRobot
 from rttrr_pin.derivation.symbols import FORCE, MOMENT, NUMBER, Dimension, Expression, Role, Symbol
 
 OUTWARDS, INWARDS = ("w", "w_dot", "v_dot", "F", "N"), ("f", "n")
-"""What the specification finishes on each link, in its order."""
+"""What the recursion finishes on each link, in its order."""
 
 SPIN = "dw"
 """Derivatives of w. All others depend linearly on derivatives alone, and have the plain name within their run."""
@@ -50,7 +50,7 @@ Place = tuple[str, int, int]
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A name and what it stands for, in letters and names of earlier steps."""
+    """A name and what it stands for, in parameter symbols and names of earlier steps."""
 
     symbol: Symbol
     terms: Expression
@@ -61,7 +61,7 @@ class Run:
     """The input of one run of the recursion, and how its names differ from those of the motion itself.
 
     Attributes:
-        model: with the drives that count.
+        model: with the joint friction and armature that count.
         v: rates; duals where derivatives by one of them are wanted.
         a: accelerations.
         gravity: the field.
@@ -204,13 +204,13 @@ def needed(steps: Iterable[Step], results: Iterable[Expression]) -> list[Step]:
 
 
 def _order(links: int) -> Iterator[tuple[str, int]]:
-    """Which vectors the specification shows to `keep`, one after the other."""
+    """The vectors that the recursion shows to `keep`, one after the other."""
     yield from ((kind, link) for link in range(links) for kind in OUTWARDS)
     yield from ((kind, link) for link in reversed(range(links)) for kind in INWARDS)
 
 
 def _free_names(links: int, taken: set[str]) -> dict[Place, str]:
-    """A name for each component, with a _ behind it where a letter has that name."""
+    """A name for each component, with a _ behind it where a symbol has that name."""
     names: dict[Place, str] = {}
     for place in ((kind, link, axis) for kind in VECTORS for link in range(links) for axis in range(3)):
         kind, link, axis = place

@@ -226,7 +226,7 @@ def default_symbols(model: Model, payload_link: int | None = None) -> ParameterS
     The payload is named after its link. J_xy, J_xz, J_yz are minus the matrix elements, as the paper has them.
     """
     named = [*_link_symbols(model), *_gravity_symbols()]
-    used = [letter for letter in named if value_of_slot(model, letter[2][0])]
+    used = [one for one in named if value_of_slot(model, one[2][0])]
     return symbols_of(model, [*used, *_payload_symbols(payload_link)])
 
 
@@ -239,32 +239,32 @@ def _link_symbols(model: Model) -> Iterator[Named]:
     for i in range(len(model.links)):
         link, up = i + 1, f"{{}}^{index(i + 1)}"
         for x, axis in enumerate(AXES):
-            yield _letter((("origin", i, x),), f"p_{link}{axis}", f"p_{{{link}{axis}}}")
-        yield _letter((("mass", i),), f"M_{link}", f"M_{index(link)}")
+            yield _named((("origin", i, x),), f"p_{link}{axis}", f"p_{{{link}{axis}}}")
+        yield _named((("mass", i),), f"M_{link}", f"M_{index(link)}")
         for x, axis in enumerate(AXES):
-            yield _letter((("com", i, x),), f"r_C{link}{axis}", f"{up}r_{{C_{{{link}{axis}}}}}")
+            yield _named((("com", i, x),), f"r_C{link}{axis}", f"{up}r_{{C_{{{link}{axis}}}}}")
         for x, axis in enumerate(AXES):
-            yield _letter((("inertia", i, x, x),), f"J_{link}{axis}", f"{up}J_{axis}^*")
+            yield _named((("inertia", i, x, x),), f"J_{link}{axis}", f"{up}J_{axis}^*")
         for x, y in ((0, 1), (0, 2), (1, 2)):
             pair = AXES[x] + AXES[y]
             places: tuple[Slot, ...] = (("inertia", i, x, y), ("inertia", i, y, x))
-            yield _letter(places, f"J_{link}{pair}", f"{up}J_{{{pair}}}^*", -1)
+            yield _named(places, f"J_{link}{pair}", f"{up}J_{{{pair}}}^*", -1)
 
 
 def _gravity_symbols() -> Iterator[Named]:
     for x, axis in enumerate(AXES):
-        letter = "g" if axis == "z" else f"g_{axis}"
-        yield _letter((("gravity", x),), letter, letter, -1)
+        name = "g" if axis == "z" else f"g_{axis}"
+        yield _named((("gravity", x),), name, name, -1)
 
 
 def _payload_symbols(link: int | None) -> Iterator[Named]:
     if link is None:
         return
     up = f"{{}}^{index(link + 1)}"
-    for kind, letter in (("force", "f"), ("moment", "n")):
+    for kind, name in (("force", "f"), ("moment", "n")):
         for x, axis in enumerate(AXES):
-            yield _letter(((kind, x),), f"{letter}_tool_{axis}", rf"{up}{letter}_{{\mathrm{{tool}},{axis}}}")
+            yield _named(((kind, x),), f"{name}_tool_{axis}", rf"{up}{name}_{{\mathrm{{tool}},{axis}}}")
 
 
-def _letter(slots: tuple[Slot, ...], identifier: str, latex: str, sign: int = 1) -> Named:
+def _named(slots: tuple[Slot, ...], identifier: str, latex: str, sign: int = 1) -> Named:
     return Symbol(identifier, latex, role_of(slots[0]), SLOT_DIMENSION[str(slots[0][0])]), sign, slots

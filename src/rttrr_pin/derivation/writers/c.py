@@ -36,16 +36,16 @@ def c(derivation: Derivation, preface: str = "") -> str:
     parts = ["\n".join(_comment(derivation, preface)), "#include <math.h>"]
     if any(True for _ in parameters(derivation)):
         parts.append("\n".join(_parameters(derivation, robot)))
-    return "\n\n".join([*parts, *("\n".join(_function(derivation, made, robot)) for made in routines)]) + "\n"
+    return "\n\n".join([*parts, *("\n".join(_function(derivation, code, robot)) for code in routines)]) + "\n"
 
 
 def _comment(derivation: Derivation, preface: str) -> Iterator[str]:
     model = derivation.robot.model
     yield f"/* Dynamic model of {words.plain(model.name)}: {', '.join(derivation.quantities)}."
-    told = arguments(derivation)
+    meaning = arguments(derivation)
     texts = [*([preface] if preface else []), *words.conventions(derivation)]
     texts.append(f"Links and joints: {words.names_of_links(model)}.")
-    texts += [f"{x}: {told[x]}." for x in ("q", "v", "a", "payload")]
+    texts += [f"{x}: {meaning[x]}." for x in ("q", "v", "a", "payload")]
     texts.append("Results go to out. Nothing is allocated, kept or checked. Compile as C99.")
     for text in texts:
         yield ""
@@ -66,23 +66,23 @@ def _parameters(derivation: Derivation, robot: str) -> Iterator[str]:
     yield "};"
 
 
-def _function(derivation: Derivation, made: Routine, robot: str) -> Iterator[str]:
-    subject, shape = QUANTITIES[made.name], derivation.quantities[made.name].shape
-    given = [f"const double {x}[{max(1, width(derivation, x))}]" for x in made.inputs]
+def _function(derivation: Derivation, code: Routine, robot: str) -> Iterator[str]:
+    quantity, shape = QUANTITIES[code.name], derivation.quantities[code.name].shape
+    declared = [f"const double {x}[{max(1, width(derivation, x))}]" for x in code.inputs]
     if any(True for _ in parameters(derivation)):
-        given.insert(0, f"const struct {robot}_parameters *parameters")
+        declared.insert(0, f"const struct {robot}_parameters *parameters")
     out = "double out" + "".join(f"[{length}]" for length in shape)
-    yield f"/* {subject.meaning[0].upper()}{subject.meaning[1:]} [{subject.unit}]. */"
-    yield from wrap(f"void {robot}_{made.name}({', '.join([*given, out])})", WIDTH, subsequent_indent="    ")
+    yield f"/* {quantity.meaning[0].upper()}{quantity.meaning[1:]} [{quantity.unit}]. */"
+    yield from wrap(f"void {robot}_{code.name}({', '.join([*declared, out])})", WIDTH, subsequent_indent="    ")
     yield "{"
-    made_of = {name: C.definition(name, derivation) for name in made.symbols}
-    for argument in (x.rpartition(" ")[2].partition("[")[0].lstrip("*") for x in given):
-        if not any(f"{argument}[" in text or f"{argument}->" in text for text in made_of.values()):
+    definitions = {name: C.definition(name, derivation) for name in code.symbols}
+    for argument in (x.rpartition(" ")[2].partition("[")[0].lstrip("*") for x in declared):
+        if not any(f"{argument}[" in text or f"{argument}->" in text for text in definitions.values()):
             yield f"    (void){argument};"
-    yield from (f"    const double {name} = {text};" for name, text in made_of.items())
-    for name, expression in made.steps:
+    yield from (f"    const double {name} = {text};" for name, text in definitions.items())
+    for name, expression in code.steps:
         yield from _assigned(f"const double {name}", expression)
-    for at, entry in made.entries:
+    for at, entry in code.entries:
         if isinstance(entry, Sum):
             yield from _assigned(_place(at), entry)
         else:

@@ -62,28 +62,28 @@ def glossary(derivation: Derivation) -> list[Entry]:
 
 def parameters(derivation: Derivation, payload: bool = False) -> Iterator[Entry]:
     """The symbols that stand for the robot's numbers; on request those of the payload too."""
-    parameters_, model = derivation.robot.parameters, derivation.robot.model
-    for symbol in parameters_.symbols:
-        given = symbol.role is Role.PAYLOAD
-        if given and not payload:
+    named, model = derivation.robot.parameters, derivation.robot.model
+    for symbol in named.symbols:
+        of_payload = symbol.role is Role.PAYLOAD
+        if of_payload and not payload:
             continue
         meanings: dict[str, None] = {}
-        for slot, terms in parameters_.slots.items():
+        for slot, terms in named.slots.items():
             sign = terms.get(((symbol.name, 1),), Fraction(0))
             if sign:
                 minus = "minus " if sign < 0 and slot[0] != "gravity" else ""
                 meanings[minus + _meaning(model, slot, derivation)] = None
-        yield Entry(symbol, ", ".join(meanings), unit(symbol), None if given else parameters_.values[symbol.name])
+        yield Entry(symbol, ", ".join(meanings), unit(symbol), None if of_payload else named.values[symbol.name])
 
 
 def payload_places(derivation: Derivation) -> dict[str, tuple[int, int]]:
-    """The place in (f_x, f_y, f_z, n_x, n_y, n_z), from 0, of each letter of the payload, and its sign."""
-    found = {}
+    """The place in (f_x, f_y, f_z, n_x, n_y, n_z), from 0, of each symbol of the payload, and its sign."""
+    places = {}
     for slot, terms in derivation.robot.parameters.slots.items():
         if slot[0] in ("force", "moment"):
             ((((name, _),), sign),) = terms.items()
-            found[name] = (int(slot[1]) + (3 if slot[0] == "moment" else 0), 1 if sign > 0 else -1)
-    return found
+            places[name] = (int(slot[1]) + (3 if slot[0] == "moment" else 0), 1 if sign > 0 else -1)
+    return places
 
 
 def following_angles(model: Model) -> list[Entry]:

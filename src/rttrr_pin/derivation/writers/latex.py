@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from itertools import pairwise
 
 from rttrr_pin.derivation import Derivation
+from rttrr_pin.derivation.latex import decimal
 from rttrr_pin.derivation.writers import mathematics
 from rttrr_pin.derivation.writers import wording as words
 from rttrr_pin.derivation.writers.glossary import Entry, glossary
@@ -68,7 +69,7 @@ def _table(entries: Iterable[Entry]) -> Iterator[str]:
     yield r"\toprule" + "\n" + r"symbol & meaning & unit & value \\" + "\n" + r"\midrule" + "\n" + r"\endhead"
     yield r"\bottomrule" + "\n" + r"\endfoot"
     for entry in entries:
-        value = "" if entry.value is None else f"${mathematics.decimal(entry.value)}$"
+        value = "" if entry.value is None else f"${decimal(entry.value)}$"
         yield rf"${entry.symbol.latex}$ & {_words(entry.meaning)} & {_unit(entry.unit)} & {value} \\"
     yield r"\end{longtable}}"
 

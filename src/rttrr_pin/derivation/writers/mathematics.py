@@ -1,15 +1,14 @@
-"""Closed forms in LaTeX's mathematics, for documents and for Markdown: the paper's letters, and how wide they print."""
+"""Closed forms as lines of LaTeX formulas that fit a page, for documents and for Markdown."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 
 from rttrr_pin.derivation import QUANTITIES, Derivation, Symbol
-from rttrr_pin.derivation.collect import SIMPLE, Presenter
-from rttrr_pin.derivation.symbols import Role
+from rttrr_pin.derivation.collect import Presenter
+from rttrr_pin.derivation.latex import latex_number, latex_power
 from rttrr_pin.derivation.writers.printing import Notation, lines, text
 
 ROOM = 47.0
@@ -56,38 +55,7 @@ class Equation:
 
 def notation(symbols: Mapping[str, Symbol]) -> Notation:
     """The notation of formulas in these symbols."""
-    return Notation(number, lambda name, power: raised(symbols[name], power), r" \cdot ", width, r"\quad ")
-
-
-def number(x: Fraction) -> str:
-    """A number: whole, a simple fraction, or the shortest decimal that is read back as the same float64."""
-    if x.denominator == 1 and x.numerator < 10**15:
-        return str(x.numerator)
-    if x.denominator <= SIMPLE and x.numerator <= SIMPLE:
-        return rf"\frac{{{x.numerator}}}{{{x.denominator}}}"
-    return decimal(float(x))
-
-
-def decimal(x: float) -> str:
-    """The shortest decimal that is read back as the same float64."""
-    digits, _, exponent = repr(x).partition("e")
-    return rf"{digits.removesuffix('.0')} \cdot 10^{{{int(exponent)}}}" if exponent else digits
-
-
-def raised(symbol: Symbol, power: int) -> str:
-    r"""A symbol to a power; of a sine the paper has it behind the letter s: s^2q_4."""
-    latex = symbol.latex
-    if power == 1:
-        return latex
-    if symbol.role in (Role.SINE, Role.COSINE):
-        return f"{latex[0]}^{_script(power)}{latex[1:]}"
-    if "^" in latex.removeprefix("{}^") or "(" in latex:
-        return rf"\left({latex}\right)^{_script(power)}"
-    return f"{latex}^{_script(power)}"
-
-
-def _script(power: int) -> str:
-    return str(power) if power < 10 else f"{{{power}}}"
+    return Notation(latex_number, lambda name, power: latex_power(symbols[name], power), r" \cdot ", width, r"\quad ")
 
 
 def width(latex: str) -> float:
@@ -108,7 +76,7 @@ def width(latex: str) -> float:
 
 
 def steps(derivation: Derivation) -> Iterator[Equation]:
-    """What is named on the way."""
+    """The steps."""
     presenter, how = Presenter(derivation.symbols), notation(derivation.symbols)
     for step in derivation.steps:
         expression = presenter.expression(step.terms)

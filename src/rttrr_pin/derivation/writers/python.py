@@ -45,10 +45,10 @@ def python(derivation: Derivation, preface: str = "") -> str:
     """
     model = derivation.robot.model
     names = ", ".join(derivation.quantities)
-    told = [f"Dynamic model of {words.plain(model.name)}: {names}."]
-    told += [*([preface] if preface else []), *words.conventions(derivation)]
-    told.append(f"Links and joints: {words.names_of_links(model)}.")
-    head = "\n\n".join("\n".join(wrap(text, WIDTH)) for text in told)
+    texts = [f"Dynamic model of {words.plain(model.name)}: {names}."]
+    texts += [*([preface] if preface else []), *words.conventions(derivation)]
+    texts.append(f"Links and joints: {words.names_of_links(model)}.")
+    head = "\n\n".join("\n".join(wrap(text, WIDTH)) for text in texts)
     parts = [f'"""{head}\n"""\n\nimport numpy as np\n', "\n".join(_parameters(derivation)), HELPERS]
     parts += ["\n".join(["", *_function(derivation, routine(derivation, name)), ""]) for name in derivation.quantities]
     return "\n".join(parts)
@@ -62,24 +62,24 @@ def _parameters(derivation: Derivation) -> Iterator[str]:
     yield '"""The numbers of the robot\'s file."""'
 
 
-def _function(derivation: Derivation, made: Routine) -> Iterator[str]:
-    given = [f"{x}=(0.0,) * 6" if x == "payload" else x for x in made.inputs]
-    yield f"def {made.name}({', '.join([*given, 'parameters=PARAMETERS'])}):"
-    yield from _docstring(derivation, made)
-    for x in made.inputs:
+def _function(derivation: Derivation, code: Routine) -> Iterator[str]:
+    inputs = [f"{x}=(0.0,) * 6" if x == "payload" else x for x in code.inputs]
+    yield f"def {code.name}({', '.join([*inputs, 'parameters=PARAMETERS'])}):"
+    yield from _docstring(derivation, code)
+    for x in code.inputs:
         yield f'    {x} = _columns("{x}", {x}, {width(derivation, x)})'
-    for name in made.symbols:
+    for name in code.symbols:
         yield f"    {name} = {PYTHON.definition(name, derivation)}"
-    for name, expression in made.steps:
+    for name, expression in code.steps:
         yield from _assigned(name, expression)
-    names = {at: f"entry_{k}" for k, (at, _) in enumerate(made.entries)}
-    for at, entry in made.entries:
+    names = {at: f"entry_{k}" for k, (at, _) in enumerate(code.entries)}
+    for at, entry in code.entries:
         if isinstance(entry, Sum):
             yield from _assigned(names[at], entry)
         else:
             yield f"    {names[at]} = {names[entry]}"
     yield f"    entries = [{', '.join(names.values())}]"
-    yield f"    return _array(entries, {derivation.quantities[made.name].shape}, {', '.join(made.inputs)})"
+    yield f"    return _array(entries, {derivation.quantities[code.name].shape}, {', '.join(code.inputs)})"
 
 
 def _assigned(name: str, expression: Sum) -> Iterator[str]:
@@ -92,17 +92,17 @@ def _assigned(name: str, expression: Sum) -> Iterator[str]:
     yield "    )"
 
 
-def _docstring(derivation: Derivation, made: Routine) -> Iterator[str]:
-    subject, told = QUANTITIES[made.name], arguments(derivation)
-    shape = ", ".join(map(str, derivation.quantities[made.name].shape))
-    yield f'    """{subject.meaning[0].upper()}{subject.meaning[1:]}.'
+def _docstring(derivation: Derivation, code: Routine) -> Iterator[str]:
+    quantity, meaning = QUANTITIES[code.name], arguments(derivation)
+    shape = ", ".join(map(str, derivation.quantities[code.name].shape))
+    yield f'    """{quantity.meaning[0].upper()}{quantity.meaning[1:]}.'
     yield ""
     yield "    Args:"
-    for x in made.inputs:
-        text = f"{x}: (..., {width(derivation, x)}), {told[x]}."
+    for x in code.inputs:
+        text = f"{x}: (..., {width(derivation, x)}), {meaning[x]}."
         yield from wrap(text, WIDTH, initial_indent=" " * 8, subsequent_indent=" " * 12)
     yield "        parameters: the robot's numbers."
     yield ""
     yield "    Returns:"
-    yield f"        (..., {shape}) [{subject.unit}]."
+    yield f"        (..., {shape}) [{quantity.unit}]."
     yield '    """'

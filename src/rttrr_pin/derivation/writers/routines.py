@@ -42,15 +42,15 @@ class Routine:
 
 def routine(derivation: Derivation, name: str) -> Routine:
     """The function for a quantity."""
-    subject, derived = QUANTITIES[name], derivation.quantities[name]
+    quantity, derived = QUANTITIES[name], derivation.quantities[name]
     presenter = Presenter(derivation.symbols)
     steps = needed(derivation.steps, derived.terms.values())
     used = _used([*(step.terms for step in steps), *derived.terms.values()])
     order = [x for x, symbol in derivation.symbols.items() if x in used and symbol.role is not Role.STEP]
-    payload = ("payload",) if subject.payload and derivation.robot.payload_link is not None else ()
+    payload = ("payload",) if quantity.payload and derivation.robot.payload_link is not None else ()
     return Routine(
         name,
-        (*subject.inputs, *payload),
+        (*quantity.inputs, *payload),
         tuple(order),
         tuple((step.symbol.name, presenter.expression(step.terms)) for step in steps),
         tuple(_entries(derived.terms, presenter)),

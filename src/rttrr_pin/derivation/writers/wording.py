@@ -54,16 +54,16 @@ def conventions(derivation: Derivation) -> Iterator[str]:
     if derivation.form == "stepwise":
         yield (
             f"The form is stepwise ({derivation.reason}): steps are named as the recursion finishes them, each in "
-            "letters and earlier steps; a rate or acceleration behind a comma stands for the derivative by it, and g "
+            "symbols and earlier steps; a rate or acceleration behind a comma stands for the derivative by it, and g "
             "for a robot at rest. Entries that would only repeat the name of a step are left out."
         )
 
 
 def heading(derivation: Derivation, name: str) -> str:
     """What a quantity is, with its unit."""
-    subject = QUANTITIES[name]
-    meaning = subject.meaning[0].upper() + subject.meaning[1:]
-    return f"{meaning} [{subject.unit}]." + (" It is symmetric; the upper half is shown." if name == "M" else "")
+    quantity = QUANTITIES[name]
+    meaning = quantity.meaning[0].upper() + quantity.meaning[1:]
+    return f"{meaning} [{quantity.unit}]." + (" It is symmetric; the upper half is shown." if name == "M" else "")
 
 
 def names_of_links(model: Model) -> str:
