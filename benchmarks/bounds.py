@@ -1,9 +1,9 @@
-"""Claim: no true error exceeds the kernel's bound, proven by balls, on a million states of RTTRR and 100,000 of others.
+"""Claim: no error exceeds the kernel's bound, proven by intervals, on a million states of RTTRR, 100,000 of others.
 
 The kernel with bounds computes tau, F, N, f, n, and another one tau alone, with inertia moved between links; the
-recursion on balls of 192 bits encloses the true values of the same states. A number counts as kept only if its ball
-shows that the whole of it lies within the bound. Written down:
-violations, bound over true error (median and least), and what the bound costs over the plain kernel.
+recursion in intervals of 192 bits encloses the true values of the same states. A bound counts as kept only if all of
+the interval of the error lies within it. Results: violations, bound over true error (median and least), and the time
+with bounds over that of the plain kernel.
 
 Run: python benchmarks/bounds.py [--states N] [--others N] [--robots NAME ...] [--time] [--save]. Exit 1 on a violation.
 """
@@ -55,32 +55,32 @@ def block(job: tuple[str, int, int]) -> tuple[str, int, dict[str, tuple[int, np.
     states = Sampler(robot.model, "uniform", 0, robot.link_names[-1]).draw(first, count)
     wrench = [rttrr_pin.Wrench(x.f, x.n, robot.link_names[x.link]) for x in states.loads]
     computed = bounded(states.q, states.v, states.a, payload=wrench, threads=1)
-    less = alone(states.q, states.v, states.a, payload=wrench, threads=1)
-    computed |= {ALONE: less["tau"], f"{ALONE}_bound": less["tau_bound"]}
+    tau = alone(states.q, states.v, states.a, payload=wrench, threads=1)
+    computed |= {ALONE: tau["tau"], f"{ALONE}_bound": tau["tau_bound"]}
     program = straight_line(robot.model, tuple((load.link, load.in_base) for load in states.loads), "doubles")
-    given = np.hstack([states.q, states.v, states.a, *(x for load in states.loads for x in (load.f, load.n))])
+    inputs = np.hstack([states.q, states.v, states.a, *(x for load in states.loads for x in (load.f, load.n))])
     ends = np.cumsum([0, *(computed[quantity][0].size for quantity in COLUMNS)])
     values, bounds = (np.hstack([computed[q + end].reshape(count, -1) for q in COLUMNS]) for end in ("", "_bound"))
-    places = [*program.columns, *program.columns[: robot.model.nv]]
+    results = [*program.columns, *program.columns[: robot.model.nv]]
     errors, kept = np.empty_like(values), np.empty(values.shape, dtype=bool)
     with precision(BITS):
         run = program.prepared()
-        for row, state in enumerate(given.tolist()):
+        for row, state in enumerate(inputs.tolist()):
             truth = run(state)
-            off = [abs(truth[place] - x) for place, x in zip(places, values[row].tolist(), strict=True)]
-            errors[row] = [float(x) for x in off]
-            kept[row] = [x <= bound for x, bound in zip(off, bounds[row].tolist(), strict=True)]  # only if certainly so
-    found = {}
+            distances = [abs(truth[k] - x) for k, x in zip(results, values[row].tolist(), strict=True)]
+            errors[row] = [float(x) for x in distances]
+            kept[row] = [x <= bound for x, bound in zip(distances, bounds[row].tolist(), strict=True)]
+    figures = {}
     for quantity, first_, last in zip(COLUMNS, ends, ends[1:], strict=False):
         x, error, bound = (y[:, first_:last] for y in (values, errors, bounds))
         size = np.linalg.norm(x, axis=1)
         size[size == 0.0] = np.inf
-        some = error > 0.0
-        ratios = np.sort(bound[some] / error[some])
+        wrong = error > 0.0
+        ratios = np.sort(bound[wrong] / error[wrong])
         worst, widest = (float((y.max(axis=1) / size).max() / EPS) for y in (error, bound))
         broken = int((~kept[:, first_:last]).sum())
-        found[quantity] = (broken, ratios[:: max(1, len(ratios) // 200)], ratios.min(initial=np.inf), worst, widest)
-    return name, count, found
+        figures[quantity] = (broken, ratios[:: max(1, len(ratios) // 200)], ratios.min(initial=np.inf), worst, widest)
+    return name, count, figures
 
 
 def cost(name: str) -> float:
@@ -121,7 +121,7 @@ def main() -> int:
             results = list(pool.map(block, jobs))
         quantities = {}
         for quantity in COLUMNS:
-            parts = [found[quantity] for _, _, found in results]
+            parts = [part[quantity] for _, _, part in results]
             ratios = np.concatenate([part[1] for part in parts])
             quantities[quantity] = {
                 "violations": sum(part[0] for part in parts),
