@@ -96,9 +96,8 @@ def planted(mutant: Mutant) -> Iterator[None]:
 
 def _functions() -> Iterator[Any]:
     """The mechanics of the core: the recursion, mimic joints, friction, and how joints move."""
-    for module in (newton_euler, rotations):
+    for module in (newton_euler, rotations, dynamics):
         yield from (x for x in vars(module).values() if inspect.isfunction(x) and x.__module__ == module.__name__)
-    yield from (dynamics.dynamics, dynamics._mimicked, dynamics.joint_effects, dynamics.generalised_forces)
     methods = (getattr(type(kind), name) for kind in JOINT_TYPES.values() for name in ("motion", "driving_force"))
     yield from dict.fromkeys(methods)
 
@@ -189,7 +188,7 @@ LEVERS = {"p": "r_C", "r_C": "p", "joint.p": "body.r_C", "body.p": "body.r_C", "
 
 def _of_name(name: str, function: str) -> Iterator[tuple[str, str, str]]:
     """The lever of the joint for that of the centre of mass, a mass squared, a force for a moment."""
-    if name in LEVERS and function != "quaternion_rotation":
+    if name in LEVERS and function in ("outwards", "inwards", "motion"):
         yield f"take {LEVERS[name]} for", name, LEVERS[name]
     elif name == "body.M":
         yield "square", name, "(body.M * body.M)"
