@@ -24,7 +24,7 @@ class Derived:
     expressions: Mapping[str, Expression]
 
     def flipped(self, names: Collection[str]) -> Derived:
-        """The same with the sign of some symbols turned: another convention."""
+        """The right-hand sides with the sign of some symbols turned, as another convention has it."""
         expressions = {
             component: {
                 factors: -x if sum(power for name, power in factors if name in names) % 2 else x

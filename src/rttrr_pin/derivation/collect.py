@@ -163,14 +163,14 @@ class Presenter:
         for name, power in outer:
             powers[self.symbols[name].role] += power
         if not outer:
-            kind = len(GROUPS) + 2
+            rank = len(GROUPS) + 2
         elif Role.ACCELERATION in powers:
-            kind = 0
+            rank = 0
         elif Role.RATE in powers:
-            kind = 3 if powers[Role.RATE] == 1 else 1 if len(outer) == 1 else 2
+            rank = 3 if powers[Role.RATE] == 1 else 1 if len(outer) == 1 else 2
         else:
-            kind = 2 + min(GROUPS.index(role) for role in powers)
-        return kind, self._order(outer)
+            rank = 2 + min(GROUPS.index(role) for role in powers)
+        return rank, self._order(outer)
 
 
 def _merged(parts: Iterable[Product]) -> list[Product]:

@@ -68,11 +68,11 @@ def motion_symbols(model: Model) -> Iterator[Symbol]:
         if joint.mimic is not None and joint.type.rotates:
             yield Symbol(f"s_j{i + 1}", rf"s\varphi_{index(i + 1)}", Role.SINE, index=i + 1)
             yield Symbol(f"c_j{i + 1}", rf"c\varphi_{index(i + 1)}", Role.COSINE, index=i + 1)
-    letter = "q" if model.nq == model.nv else None
+    plain = model.nq == model.nv
     rotations = [rotation for joint in model.moving for rotation in joint.type.rotations]
     for k, rotation in enumerate(rotations, start=1):
         rate, twice = (rf"\dot{{q}}_{index(k)}", rf"\ddot{{q}}_{index(k)}")
-        if letter is None:
+        if not plain:
             rate, twice = f"v_{index(k)}", rf"\dot{{v}}_{index(k)}"
         length = 0 if rotation else 1
         yield Symbol(f"v_{k}", rate, Role.RATE, Dimension(length=length, time=-1), k)

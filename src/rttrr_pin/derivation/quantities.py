@@ -59,16 +59,16 @@ def indices(shape: tuple[int, ...]) -> Iterator[Index]:
         yield from ((i, j) for i in range(shape[0]) for j in range(shape[1]))
 
 
-def _of_link(letter: str) -> Callable[[Index], str]:
-    return lambda at: f"{{}}^{index(at[0] + 1)}{letter}_{AXES[at[1]]}"
+def _of_link(name: str) -> Callable[[Index], str]:
+    return lambda at: f"{{}}^{index(at[0] + 1)}{name}_{AXES[at[1]]}"
 
 
-def _of_joint(letter: str) -> Callable[[Index], str]:
-    return lambda at: f"{letter}_{index(at[0] + 1)}"
+def _of_joint(name: str) -> Callable[[Index], str]:
+    return lambda at: f"{name}_{index(at[0] + 1)}"
 
 
-def _of_pair(letter: str) -> Callable[[Index], str]:
-    return lambda at: f"{letter}_{{{at[0] + 1},{at[1] + 1}}}"
+def _of_pair(name: str) -> Callable[[Index], str]:
+    return lambda at: f"{name}_{{{at[0] + 1},{at[1] + 1}}}"
 
 
 def _acceleration(at: Index) -> str:

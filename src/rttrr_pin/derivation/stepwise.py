@@ -151,8 +151,8 @@ class Stepwise:
         """What a symbol of a run is called outside it; w is that of the motion in every run."""
         if name not in self._places or self._places[name][0] == "w":
             return name
-        kind, link, axis = self._places[name]
-        return (self._names["w", link, axis] if kind == SPIN else name) + suffix
+        vector, link, axis = self._places[name]
+        return (self._names["w", link, axis] if vector == SPIN else name) + suffix
 
     def _motion(self, role: Role) -> list[Symbol]:
         return [symbol for symbol in self.robot.motion if symbol.role is role]
@@ -163,10 +163,10 @@ class Stepwise:
         bodies = unit_masses(robot.bodies()) if run.accelerations else robot.bodies()
 
         def keep(x: Vector) -> Vector:
-            kind, link = next(order)
-            if run.accelerations and kind in ("F", "N", "f", "n"):
-                return x if kind == "F" else ZERO
-            return Vector(*(self._kept((kind, link, axis), scalar, run) for axis, scalar in enumerate(x)))
+            vector, link = next(order)
+            if run.accelerations and vector in ("F", "N", "f", "n"):
+                return x if vector == "F" else ZERO
+            return Vector(*(self._kept((vector, link, axis), scalar, run) for axis, scalar in enumerate(x)))
 
         arithmetic = symbolic_arithmetic(robot, keep)
         return dynamics(run.model, arithmetic, robot.q, run.v, run.a, run.payloads, bodies, run.gravity)
@@ -175,8 +175,8 @@ class Stepwise:
         """What stands for a component from now on."""
         if not run.dual:
             return self._named(place, x, run)
-        kind, link, axis = place
-        if kind != "w":
+        vector, link, axis = place
+        if vector != "w":
             return Dual(0, {0: self._named(place, _part(x), run)})
         return Dual(self._named(place, value_of(x), run), {0: self._named((SPIN, link, axis), _part(x), run)})
 
@@ -205,16 +205,16 @@ def needed(steps: Iterable[Step], results: Iterable[Expression]) -> list[Step]:
 
 def _order(links: int) -> Iterator[tuple[str, int]]:
     """The vectors that the recursion shows to `keep`, one after the other."""
-    yield from ((kind, link) for link in range(links) for kind in OUTWARDS)
-    yield from ((kind, link) for link in reversed(range(links)) for kind in INWARDS)
+    yield from ((vector, link) for link in range(links) for vector in OUTWARDS)
+    yield from ((vector, link) for link in reversed(range(links)) for vector in INWARDS)
 
 
 def _free_names(links: int, taken: set[str]) -> dict[Place, str]:
     """A name for each component, with a _ behind it where a symbol has that name."""
     names: dict[Place, str] = {}
-    for place in ((kind, link, axis) for kind in VECTORS for link in range(links) for axis in range(3)):
-        kind, link, axis = place
-        name = f"{kind}_{link + 1}{AXES[axis]}"
+    for place in ((vector, link, axis) for vector in VECTORS for link in range(links) for axis in range(3)):
+        vector, link, axis = place
+        name = f"{vector}_{link + 1}{AXES[axis]}"
         while name in taken:
             name += "_"
         names[place] = name
@@ -223,11 +223,11 @@ def _free_names(links: int, taken: set[str]) -> dict[Place, str]:
 
 def _symbol(place: Place, name: str, run: Run) -> Symbol:
     """The symbol of a step; w itself is that of the motion in every run."""
-    kind, link, axis = place
-    letter, dimension = VECTORS[kind]
-    if kind == "w" or not run.latex:
-        return Symbol(name, f"{{}}^{index(link + 1)}{letter}_{AXES[axis]}", Role.STEP, dimension)
-    latex = f"{{}}^{index(link + 1)}{letter}_{{{AXES[axis]}{run.latex}}}"
+    vector, link, axis = place
+    base, dimension = VECTORS[vector]
+    if vector == "w" or not run.latex:
+        return Symbol(name, f"{{}}^{index(link + 1)}{base}_{AXES[axis]}", Role.STEP, dimension)
+    latex = f"{{}}^{index(link + 1)}{base}_{{{AXES[axis]}{run.latex}}}"
     return Symbol(name, latex, Role.STEP, dimension.times(run.by, -1))
 
 

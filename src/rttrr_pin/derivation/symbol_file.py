@@ -242,10 +242,10 @@ def _moved(slot: Slot, places: Sequence[int]) -> Slot:
 
 
 def _values_in(
-    model: Model, slots: Mapping[Slot, Expression], given: Mapping[str, float], about: Table
+    model: Model, slots: Mapping[Slot, Expression], stated: Mapping[str, float], about: Table
 ) -> dict[str, float]:
     """The number of each symbol as the URDF has it, once all expressions are shown to hold there."""
-    values = dict(given)
+    values = dict(stated)
     for slot, expression in slots.items():
         if len(expression) == 1:
             ((factors, coefficient),) = expression.items()

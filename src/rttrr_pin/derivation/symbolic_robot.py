@@ -44,7 +44,7 @@ SLOT_DIMENSION: Mapping[str, Dimension] = {
     "force": FORCE,
     "moment": MOMENT,
 }
-"""The dimension of each kind of slot."""
+"""The dimension of each quantity of slot."""
 
 AXES = "xyz"
 
@@ -121,7 +121,7 @@ class SymbolicRobot:
         """What the robot exerts on its surroundings."""
         if self.payload_link is None:
             return []
-        force, moment = (self._vector(kind, (), (0.0, 0.0, 0.0)) for kind in ("force", "moment"))
+        force, moment = (self._vector(quantity, (), (0.0, 0.0, 0.0)) for quantity in ("force", "moment"))
         return [Payload(self.payload_link, force, moment)]
 
     def bodies(self) -> list[Body]:
@@ -154,8 +154,8 @@ class SymbolicRobot:
             parameters=tuple(exact(x) for x in joint.type.parameters),
         )
 
-    def _vector(self, kind: str, place: tuple[int, ...], values: Iterable[float]) -> Vector:
-        return Vector(*(self._number((kind, *place, x), float(value)) for x, value in enumerate(values)))
+    def _vector(self, quantity: str, place: tuple[int, ...], values: Iterable[float]) -> Vector:
+        return Vector(*(self._number((quantity, *place, x), float(value)) for x, value in enumerate(values)))
 
     def _number(self, slot: Slot, value: float) -> Scalar:
         if slot in self.parameters.slots:
@@ -189,17 +189,17 @@ def role_of(slot: Slot) -> Role:
 
 def value_of_slot(model: Model, slot: Slot) -> float:
     """The number that a robot has in a slot; 0 for the payload, which it has none of."""
-    kind, *place = slot
+    quantity, *place = slot
     i = [int(x) for x in place]
-    if kind == "mass":
+    if quantity == "mass":
         return model.links[i[0]].mass
-    if kind == "com":
+    if quantity == "com":
         return float(model.links[i[0]].com[i[1]])
-    if kind == "inertia":
+    if quantity == "inertia":
         return float(model.links[i[0]].inertia[i[1], i[2]])
-    if kind == "origin":
+    if quantity == "origin":
         return float(model.joints[i[0]].p[i[1]])
-    return float(model.gravity[i[0]]) if kind == "gravity" else 0.0
+    return float(model.gravity[i[0]]) if quantity == "gravity" else 0.0
 
 
 def symbols_of(model: Model, named: Iterable[Named]) -> ParameterSymbols:
@@ -261,9 +261,9 @@ def _payload_symbols(link: int | None) -> Iterator[Named]:
     if link is None:
         return
     up = f"{{}}^{index(link + 1)}"
-    for kind, name in (("force", "f"), ("moment", "n")):
+    for quantity, name in (("force", "f"), ("moment", "n")):
         for x, axis in enumerate(AXES):
-            yield _named(((kind, x),), f"{name}_tool_{axis}", rf"{up}{name}_{{\mathrm{{tool}},{axis}}}")
+            yield _named(((quantity, x),), f"{name}_tool_{axis}", rf"{up}{name}_{{\mathrm{{tool}},{axis}}}")
 
 
 def _named(slots: tuple[Slot, ...], identifier: str, latex: str, sign: int = 1) -> Named:

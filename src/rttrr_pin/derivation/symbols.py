@@ -27,7 +27,7 @@ class Dimension(NamedTuple):
 
     def times(self, other: Dimension, power: int = 1) -> Dimension:
         """The dimension of a product, self other^power."""
-        return Dimension(*(mine + power * theirs for mine, theirs in zip(self, other, strict=True)))
+        return Dimension(*(own + power * more for own, more in zip(self, other, strict=True)))
 
     def __str__(self) -> str:
         units = zip(("m", "kg", "s"), self, strict=True)

@@ -46,8 +46,8 @@ class Table:
                 raise self.error(f"has the key {key!r}, which means nothing here: {hint}")
         return self
 
-    def get(self, key: str, kind: type[Value], default: Value | None = None) -> Value:
-        """An entry of a given type.
+    def get(self, key: str, expected: type[Value], default: Value | None = None) -> Value:
+        """An entry of a type.
 
         Raises:
             EquationError: it is missing and has no default, or is of another type.
@@ -57,10 +57,10 @@ class Table:
                 raise self.error(f"lacks {key!r}: add it")
             return default
         value = self.entries[key]
-        if kind is float and isinstance(value, int) and not isinstance(value, bool):
+        if expected is float and isinstance(value, int) and not isinstance(value, bool):
             value = float(value)
-        if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
-            raise self.error(f"{key} is {value!r}: expected {_WORDS[kind]}")
+        if not isinstance(value, expected) or (isinstance(value, bool) and expected is not bool):
+            raise self.error(f"{key} is {value!r}: expected {_WORDS[expected]}")
         return value
 
     def texts(self, key: str, count: int | None = None, default: Sequence[str] | None = None) -> list[str]:

@@ -186,11 +186,11 @@ def display(component: ComponentAudit, language: str) -> Display:
 
 def left_side(name: str) -> str:
     r"""The name of a component in LaTeX: `\dot{v}_{C_{5x}}` for vC5x, `F_{5z}`, `\tau_{2}`."""
-    letters = name.rstrip("0123456789xyz")
-    index = name.removeprefix(letters)
-    if letters == "vC":
+    quantity = name.rstrip("0123456789xyz")
+    index = name.removeprefix(quantity)
+    if quantity == "vC":
         return rf"\dot{{v}}_{{C_{{{index}}}}}"
-    return rf"{chr(92) + letters if letters == 'tau' else letters}_{{{index}}}"
+    return rf"{chr(92) + quantity if quantity == 'tau' else quantity}_{{{index}}}"
 
 
 def prose(text: str) -> Line:
@@ -199,16 +199,16 @@ def prose(text: str) -> Line:
     for word in WORD.findall(text):
         quoted = len(word) > 1 and word[0] == word[-1] and word[0] in "'`"
         body = word[1:-1] if quoted else word.rstrip(",;.:)")
-        kind = _kind(body, quoted)
-        if isinstance(kind, Words):
-            kind, tail = Words(word), ""
+        part = _part(body, quoted)
+        if isinstance(part, Words):
+            part, tail = Words(word), ""
         else:
             tail = "" if quoted else word[len(body) :]
-        pieces += [kind, Words(tail)] if tail else [kind]
+        pieces += [part, Words(tail)] if tail else [part]
     return tuple(_merged(pieces))
 
 
-def _kind(text: str, quoted: bool) -> Piece:
+def _part(text: str, quoted: bool) -> Piece:
     if re.search(r"\\|\{\}|[_^]\{", text):
         return Formula(text) if settable(text) else Code(text)
     return Code(text) if quoted or re.search(r"\w[_^]\w", text) else Words(text)

@@ -29,16 +29,16 @@ def ways(factors: Factors, vocabulary: Vocabulary) -> Ways:
     Raises:
         UnreadableError: there are too many.
     """
-    found: Ways = [(factors, "")]
+    readings: Ways = [(factors, "")]
     for i in range(len(factors)):
         for rule in RULES:
-            found = [
-                (changed, joined(note, more)) for kept, note in found for changed, more in rule(kept, i, vocabulary)
+            readings = [
+                (changed, joined(note, more)) for kept, note in readings for changed, more in rule(kept, i, vocabulary)
             ]
-        if len(found) > MOST:
+        if len(readings) > MOST:
             message = f"this can be read in more than {MOST} ways; set it apart with brackets"
             raise UnreadableError(message, factors[0].start)
-    return found
+    return readings
 
 
 def joined(*notes: str) -> str:

@@ -93,9 +93,9 @@ def _divisions(text: str, rows: Sequence[Row], matrix: bool, components: int) ->
 def _guessed(text: str, rows: Sequence[Row], certain: Sequence[int], wanted: int) -> list[tuple[tuple[int, ...], str]]:
     """The certain boundaries, and each choice of line breaks for those that are lost."""
     others = [i for i in range(1, len(rows)) if i not in certain]
-    found: list[tuple[tuple[int, ...], str]] = []
+    divisions: list[tuple[tuple[int, ...], str]] = []
     for added in combinations(others, wanted - len(certain)):
-        if len(found) == MOST:
+        if len(divisions) == MOST:
             raise UnreadableError(f"the display can be divided in more than {MOST} ways", start_of(rows[0].tokens[0]))
         starts = tuple(sorted((*certain, *added)))
         places = " and ".join(
@@ -104,8 +104,8 @@ def _guessed(text: str, rows: Sequence[Row], certain: Sequence[int], wanted: int
         note = f"the boundary is not printed: component {places}"
         if any(rows[i - 1].open_end for i in added):
             note += "; the sign at the end of the row before it left out"
-        found.append((starts, note))
-    return found
+        divisions.append((starts, note))
+    return divisions
 
 
 def _beginning(text: str, row: Row) -> str:

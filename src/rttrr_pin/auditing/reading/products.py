@@ -36,10 +36,10 @@ def terms_of(products: Sequence[Product], vocabulary: Vocabulary, text: str) -> 
 def _terms(product: Product, vocabulary: Vocabulary, text: str) -> Terms:
     if product.enclosed:
         return terms_of(product.enclosed, vocabulary, text)
-    found = [_Literal(vocabulary, text).read(factors, note) for factors, note in ways(product.factors, vocabulary)]
+    literals = [_Literal(vocabulary, text).read(factors, note) for factors, note in ways(product.factors, vocabulary)]
     sign = [Reading(Fraction(value), (), note) for value, note in signs(product.signs)]
-    readings = [reading for reading, _ in found]
-    return expanded(text, product.start, product.end, [sign, readings], found[0][1])
+    readings = [reading for reading, _ in literals]
+    return expanded(text, product.start, product.end, [sign, readings], literals[0][1])
 
 
 @dataclass

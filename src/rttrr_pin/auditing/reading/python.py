@@ -180,10 +180,10 @@ class _Expression:
             indices.append(self.index(argument.right))
             argument = argument.left
         indices.append(self.index(argument))
-        found = {index for index in indices if index is not None}
-        if len(found) < len(indices):
+        known = {index for index in indices if index is not None}
+        if len(known) < len(indices):
             raise self.fault("the angle is wanted as a coordinate or a sum of coordinates", node.args[0])
-        return angle_name(FUNCTIONS[called], found)
+        return angle_name(FUNCTIONS[called], known)
 
 
 @dataclass(slots=True)

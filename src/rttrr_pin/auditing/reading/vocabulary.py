@@ -87,10 +87,10 @@ class Vocabulary:
         if all(part.isdecimal() for part in parts):
             return [int(digit) for digit in subscript] if len(parts) == 1 else [int(part) for part in parts]
         try:
-            found = [self.coordinate(atom_of(part)) for part in parts]
+            indices = [self.coordinate(atom_of(part)) for part in parts]
         except UnreadableError:
             return []
-        return [index for index in found if index is not None] if None not in found else []
+        return [index for index in indices if index is not None] if None not in indices else []
 
     def identifier(self, atom: Atom) -> str:
         """The name of a symbol, known or not.

@@ -5,14 +5,11 @@ A new format is one module with a function that fulfils `Writer`, and one line i
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from importlib import import_module
 from typing import Protocol
 
 from rttrr_pin.derivation import Derivation
-from rttrr_pin.derivation.writers.c import c
-from rttrr_pin.derivation.writers.latex import latex
-from rttrr_pin.derivation.writers.markdown import markdown
-from rttrr_pin.derivation.writers.python import python
 from rttrr_pin.derivation.writers.table import show_derivation
 
 __all__ = ["WRITERS", "Writer", "show_derivation"]
@@ -25,5 +22,23 @@ class Writer(Protocol):
         """The whole text; `preface` is a paragraph to put before all others."""
 
 
-WRITERS: Mapping[str, Writer] = {"latex": latex, "markdown": markdown, "python": python, "c": c}
+class Writers(Mapping[str, Writer]):
+    """Writers by format, each loaded when it is asked for: C needs the compiler's names, and others do not."""
+
+    FORMATS = ("latex", "markdown", "python", "c")
+
+    def __getitem__(self, name: str) -> Writer:
+        if name not in self.FORMATS:
+            raise KeyError(name)
+        writer: Writer = getattr(import_module(f"{__name__}.{name}"), name)
+        return writer
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.FORMATS)
+
+    def __len__(self) -> int:
+        return len(self.FORMATS)
+
+
+WRITERS = Writers()
 """By format."""

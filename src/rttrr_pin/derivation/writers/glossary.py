@@ -131,21 +131,21 @@ def _of_motion(model: Model, symbol: Symbol) -> Entry:
 
 def _meaning(model: Model, slot: Slot, derivation: Derivation) -> str:
     """A number of a robot in words."""
-    kind, *place = slot
+    number, *place = slot
     i = [int(x) for x in place]
     axes = "".join(AXES[x] for x in sorted(i[1:]))
-    if kind in ("force", "moment"):
+    if number in ("force", "moment"):
         link = derivation.robot.payload_link or 0
-        return f"payload: {AXES[i[0]]} of the {kind} that {plain(model.links[link].name)} exerts on its surroundings"
-    if kind == "gravity":
+        return f"payload: {AXES[i[0]]} of the {number} that {plain(model.links[link].name)} exerts on its surroundings"
+    if number == "gravity":
         return f"gravity against the base's {AXES[i[0]]} axis"
-    if kind == "origin":
+    if number == "origin":
         parent = model.joints[i[0]].parent
         on = model.links[parent] if parent >= 0 else model.root
         return f"{axes} of the origin of {plain(model.joints[i[0]].name)} on {plain(on.name)}"
     link_name = plain(model.links[i[0]].name)
-    if kind == "mass":
+    if number == "mass":
         return f"mass of {link_name}"
-    if kind == "com":
+    if number == "com":
         return f"{axes} of the centre of mass of {link_name}"
     return f"i{axes} of the inertia tensor of {link_name} about its centre of mass"
