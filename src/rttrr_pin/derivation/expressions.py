@@ -26,6 +26,8 @@ def read_expression(text: str, names: Collection[str]) -> Expression:
     """
     try:
         return _read(ast.parse(text.strip(), mode="eval").body, text.strip(), names)
+    except InputError:  # a ValueError, and says more
+        raise
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         raise InputError(f"{text!r} cannot be read: expected a sum of products of symbols and numbers") from error
 
