@@ -63,7 +63,7 @@ class Emitter(Protocol):
         ...
 
 
-EMITTERS = ("llvm", "numba", "numpy", "c")
+EMITTERS = ("llvm", "numpy", "c")
 """By preference; the module of the same name here has a function `emitter()`."""
 
 

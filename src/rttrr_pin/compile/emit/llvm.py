@@ -1,16 +1,15 @@
-"""Machine code for this processor by LLVM, through llvmlite, the part of Numba that compiles.
+"""Machine code for this processor by LLVM, through llvmlite.
 
 Straight from the program to LLVM's assembly: vectors of states are written as vectors, so that nothing is left to the
-luck of an optimiser, and what takes Numba long, inferring types line by line, does not arise.
+luck of an optimiser.
 """
 
 from __future__ import annotations
 
 import ctypes
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import cache
-from typing import Any
 
 import llvmlite
 import llvmlite.binding as llvm
@@ -19,7 +18,7 @@ from numpy.typing import NDArray
 
 from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.emit import Array, Task
-from rttrr_pin.compile.emit.fastcall import python_call, python_function
+from rttrr_pin.compile.emit.fastcall import python_function
 from rttrr_pin.compile.emit.llvm_body import body
 from rttrr_pin.compile.emit.llvm_calls import calls
 from rttrr_pin.compile.emit.llvm_vectors import Layout
@@ -47,7 +46,7 @@ def _initialised() -> None:
 
 
 def _processor() -> tuple[str, str]:
-    """Name and features of the processor to compile for; Numba's variables choose another."""
+    """Name and features of the processor to compile for; the environment may choose another."""
     name = os.environ.get("NUMBA_CPU_NAME") or llvm.get_host_cpu_name()
     named = "NUMBA_CPU_NAME" in os.environ
     features = os.environ.get("NUMBA_CPU_FEATURES", "" if named else llvm.get_host_cpu_features().flatten())
@@ -136,11 +135,6 @@ class LlvmExecutable:
         kind = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64)
         self._run = kind(engine.get_function_address("run"))
         self.one = python_function(engine.get_function_address("one"), engine.get_function_address("set_context"))
-
-    def call(self, general: Callable[..., Any], owner: object) -> Callable[..., Any] | None:
-        """A callable for f(q, v, a, out=out) on one state or few; what it declines goes to the general one."""
-        address = self._engine.get_function_address
-        return python_call(address("call"), address("set_context"), general, owner)
 
     def bind(self, inputs: Sequence[Array], outputs: Sequence[NDArray[np.float64]]) -> Task:
         """Describe the arrays once, for any number of calls from any thread."""

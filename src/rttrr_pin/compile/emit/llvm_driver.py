@@ -2,7 +2,7 @@
 
     int64 run(int64 *arrays, int64 start, int64 stop)    1 where a result is not finite, -1 without memory
 
-and what CPython calls, see `llvm_python`. `arrays` has `RECORD` numbers for each input, then each output: address,
+and `one`, which CPython calls, see `llvm_python`. `arrays` has `RECORD` numbers for each input, then each output: address,
 distance in bytes from state to state and from column to column, count of columns, 1 for float32.
 """
 
@@ -13,7 +13,7 @@ from llvmlite import ir
 from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.emit.llvm_block import Array, Block, compute
 from rttrr_pin.compile.emit.llvm_columns import F32, F64, I64, PTR, function, number, pack, unpack, unsound
-from rttrr_pin.compile.emit.llvm_python import python_entries
+from rttrr_pin.compile.emit.llvm_python import python_entry
 from rttrr_pin.compile.emit.llvm_vectors import Layout
 from rttrr_pin.compile.program import Program
 
@@ -44,7 +44,7 @@ def driver(program: Program | CallProgram, layout: Layout, between: int) -> str:
         unsound=unsound(module, layout),
     )
     _run(module, block)
-    python_entries(module, block)
+    python_entry(module, block)
     return str(module)
 
 
