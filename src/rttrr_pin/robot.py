@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast, overload
 
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.batch import RESULTS, batch_shape, blocks, check_overflow, empty_wrenches, fill, flat
-from rttrr_pin.core.dynamics import bodies, evaluate
-from rttrr_pin.core.inputs import Coordinates, coordinates, finite, real, vectors
+from rttrr_pin.core.batch import RESULTS
+from rttrr_pin.core.dynamics import bodies
+from rttrr_pin.core.inputs import Coordinates, coordinates, finite, real
 from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.core.model import Model
-from rttrr_pin.core.payload import Load
+from rttrr_pin.core.payload import Load, Payloads, load_of, loads_of, payload_link
 from rttrr_pin.core.scalars import FLOAT
 from rttrr_pin.core.wrench import LinkWrenches, Wrench
 from rttrr_pin.errors import InputError, NumberError, UnknownNameError
@@ -23,9 +23,6 @@ if TYPE_CHECKING:
     from rttrr_pin.compile import Kernel
     from rttrr_pin.exact.enclosures import Enclosures
     from rttrr_pin.exact.parameters import Parameters
-
-KERNEL_FROM = 8192
-"""States in a batch from which compiling, or reading what was compiled before, costs less than it saves."""
 
 
 class Robot:
@@ -37,7 +34,7 @@ class Robot:
 
     def __init__(self, model: Model) -> None:
         self.model = model
-        self._kernels: dict[object, Kernel] = {}
+        self._kernels: dict[object, Kernel[Any]] = {}
 
     def __getstate__(self) -> dict[str, object]:
         """The data alone: a copy, or another process, compiles or reads its own kernels."""
@@ -67,7 +64,7 @@ class Robot:
         q: Coordinates,
         v: Coordinates,
         a: Coordinates,
-        payload: Wrench | Sequence[Wrench] | None = None,
+        payload: Payloads = None,
     ) -> LinkWrenches:
         """Driving forces and all joint loads for given motion, by the Newton-Euler recursion.
 
@@ -80,9 +77,8 @@ class Robot:
         A joint that follows another (<mimic>) has no coordinate of its own; what drives it is part of the other's tau,
         times the multiplier.
 
-        Batches of 8,192 states and more are computed by the compiled kernel, smaller ones by the readable recursion,
-        whose last digits are rounded differently. A kernel of your own, `robot.compile(...)`, gives each state the same
-        bits in every batch.
+        It is always compiled code that answers (`compile`), and a state has the same bits alone, in every batch and in
+        every layout. The first call compiles, or reads what another process has compiled before.
 
         Args:
             q: joint coordinates, (..., nq) [rad or m], or a dict by joint name. nq is nv, but for floating joints,
@@ -100,32 +96,15 @@ class Robot:
             NumberError: a value is NaN, inf, complex, ..., or so large that the result overflows.
             UnknownNameError, MissingJointError: a dict's keys, or the payload's link, do not exist.
         """
-        arrays = [coordinates(name, x, self.model.moving) for name, x in (("q", q), ("v", v), ("a", a))]
-        loads = self._loads(payload)
-        batch = batch_shape(arrays, loads)
-        rows = int(np.prod(batch, dtype=np.int64))
-        if rows >= KERNEL_FROM:
-            q, v, a = arrays
-            parts = self.compile(RESULTS)(q, v, a, payload=payload)
-            return LinkWrenches.of(parts, self.link_names, self.model.v_names)
-        q_, v_, a_ = (np.broadcast_to(x, (*batch, x.shape[-1])).reshape(rows, x.shape[-1]) for x in arrays)
-        flat_loads = [flat(load, batch, rows) for load in loads]
-        out = empty_wrenches(self.model, rows)
-        for part in blocks(rows):
-            states = (q_[part], v_[part], a_[part])
-            with np.errstate(over="ignore", invalid="ignore"):  # looked for below, where the state can be named
-                result = evaluate(self.model, FLOAT, *states, [load.block(part) for load in flat_loads])
-            fill(out, part, result)
-        check_overflow(out, q_, v_, a_)
-        shaped = {key: getattr(out, key).reshape(*batch, *getattr(out, key).shape[1:]) for key in RESULTS}
-        return LinkWrenches.of(shaped, self.link_names, self.model.v_names)
+        parts = self._kernel(RESULTS)(q, v, a, payload)
+        return LinkWrenches.of(parts, self.link_names, self.model.v_names)
 
     def enclose(
         self,
         q: Coordinates,
         v: Coordinates,
         a: Coordinates,
-        payload: Wrench | Sequence[Wrench] | None = None,
+        payload: Payloads = None,
         parameters: Parameters = "doubles",
     ) -> Enclosures:
         """Enclose the true tau, F, N, f, n between two doubles each, by interval arithmetic at rising precision.
@@ -154,16 +133,22 @@ class Robot:
         from rttrr_pin.exact.enclosures import enclose
 
         q, v, a = (coordinates(name, x, self.model.moving) for name, x in (("q", q), ("v", v), ("a", a)))
-        return enclose(self.model, q, v, a, self._loads(payload), parameters)
+        return enclose(self.model, q, v, a, loads_of(self.model, payload), parameters)
 
-    def compile(self, outputs: str | Sequence[str] = "tau", emitter: str | None = None) -> Kernel:
+    @overload
+    def compile(self, outputs: str = "tau", emitter: str | None = None) -> Kernel[Array]: ...
+
+    @overload
+    def compile(self, outputs: tuple[str, ...] | list[str], emitter: str | None = None) -> Kernel[dict[str, Array]]: ...
+
+    def compile(self, outputs: str | Sequence[str] = "tau", emitter: str | None = None) -> Kernel[Any]:
         """Compile the robot's dynamics for this processor.
 
         Args:
             outputs: what to compute, one name or several: `"tau"`, `"F"`, `"N"`, `"f"`, `"n"`, `"tau_joint"`,
                 `"mass_matrix"`, `"nonlinear_effects"`, `"gravity_torque"`, `"regressor"`, `"dtau_dq"`, `"dtau_dv"`,
                 `"dtau_da"`; and each of them with `"_bound"` behind, a bound on its rounding. The fewer, the faster.
-            emitter: `"llvm"` (machine code), `"numba"`, `"numpy"` (wherever NumPy runs) or `"c"` (by the C compiler);
+            emitter: `"llvm"` (machine code), `"numpy"` (wherever NumPy runs) or `"c"` (by the C compiler);
                 None for what is there.
 
         Returns:
@@ -173,12 +158,16 @@ class Robot:
             UnknownNameError: there is no such output, or no such emitter.
             InputError: no output, or one twice; or the emitter cannot be imported.
         """
-        from rttrr_pin.compile import Kernel
+        outputs = outputs if isinstance(outputs, str) else tuple(outputs)
+        return self._kernel(outputs, emitter)
 
-        name = (outputs, emitter) if isinstance(outputs, str) else (tuple(outputs), emitter)
-        if name not in self._kernels:
-            self._kernels[name] = Kernel(self.model, outputs, self._loads, emitter)
-        return self._kernels[name]
+    def _kernel(self, outputs: str | tuple[str, ...], emitter: str | None = None) -> Kernel[Any]:
+        kernel = self._kernels.get((outputs, emitter))
+        if kernel is None:
+            from rttrr_pin.compile import Kernel
+
+            kernel = self._kernels[outputs, emitter] = Kernel(self.model, outputs, emitter)
+        return kernel
 
     def mass_matrix(self, q: Coordinates) -> Array:
         """The mass matrix M(q), armature included, symmetric to the last bit.
@@ -192,7 +181,7 @@ class Robot:
         Raises:
             ShapeError, NumberError, UnknownNameError, MissingJointError: as in `inverse_dynamics`.
         """
-        return self._computed("mass_matrix", q)
+        return cast("Array", self._kernel("mass_matrix")(q))
 
     def nonlinear_effects(self, q: Coordinates, v: Coordinates) -> Array:
         """The driving forces without acceleration: Coriolis, centrifugal, gravity, and friction of the drives.
@@ -207,7 +196,7 @@ class Robot:
         Raises:
             ShapeError, NumberError, UnknownNameError, MissingJointError: as in `inverse_dynamics`.
         """
-        return self._computed("nonlinear_effects", q, v)
+        return cast("Array", self._kernel("nonlinear_effects")(q, v))
 
     def gravity_torque(self, q: Coordinates) -> Array:
         """The driving forces that hold the robot still.
@@ -221,7 +210,7 @@ class Robot:
         Raises:
             ShapeError, NumberError, UnknownNameError, MissingJointError: as in `inverse_dynamics`.
         """
-        return self._computed("gravity_torque", q)
+        return cast("Array", self._kernel("gravity_torque")(q))
 
     def regressor(self, q: Coordinates, v: Coordinates, a: Coordinates) -> Array:
         """Y(q, v, a), by which the driving forces are linear in the inertial parameters: tau - tau_joint = Y pi.
@@ -240,7 +229,7 @@ class Robot:
         Raises:
             ShapeError, NumberError, UnknownNameError, MissingJointError: as in `inverse_dynamics`.
         """
-        return self._computed("regressor", q, v, a)
+        return cast("Array", self._kernel("regressor")(q, v, a))
 
     def inertial_parameters(self) -> Array:
         """The parameters that `regressor` multiplies, (10 links,), ten for each link."""
@@ -254,7 +243,7 @@ class Robot:
         return np.array(found, dtype=np.float64)
 
     def derivatives(
-        self, q: Coordinates, v: Coordinates, a: Coordinates, payload: Wrench | Sequence[Wrench] | None = None
+        self, q: Coordinates, v: Coordinates, a: Coordinates, payload: Payloads = None
     ) -> tuple[Array, Array, Array]:
         """The exact derivatives of the driving forces, by dual numbers.
 
@@ -273,16 +262,8 @@ class Robot:
         Raises:
             ShapeError, NumberError, UnknownNameError, MissingJointError: as in `inverse_dynamics`.
         """
-        names = ("dtau_dq", "dtau_dv", "dtau_da")
-        parts = self.compile(names)(q, v, a, payload=payload)
+        parts = self._kernel(("dtau_dq", "dtau_dv", "dtau_da"))(q, v, a, payload)
         return parts["dtau_dq"], parts["dtau_dv"], parts["dtau_da"]
-
-    def _computed(self, name: str, q: Coordinates, v: Coordinates | None = None, a: Coordinates | None = None) -> Array:
-        result: Array = self.compile(name)(q, v, a)
-        return result
-
-    def _loads(self, payload: Wrench | Sequence[Wrench] | None) -> list[Load]:
-        return [self.load_of(wrench) for wrench in _as_list(payload)]
 
     def load_of(self, wrench: Wrench) -> Load:
         """A user's wrench at the index of its link.
@@ -290,14 +271,12 @@ class Robot:
         Raises:
             InputError: it is no wrench, or names no link where there are several last ones.
             UnknownNameError: no link is called so.
-            ShapeError, NumberError: its force or moment is no vector of finite numbers.
         """
-        if not isinstance(wrench, Wrench):
-            raise InputError(
-                f"payload is a {type(wrench).__name__}, expected a Wrench: pass Wrench(force=..., moment=...)"
-            )
-        f, n = vectors("payload force", wrench.force), vectors("payload moment", wrench.moment)
-        return Load(self.payload_link(wrench.link), f, n, wrench.expressed_in == "base")
+        return load_of(self.model, wrench)
+
+    def payload_link(self, name: str | None) -> int:
+        """The index of the link that a payload acts at, see `core.payload.payload_link`."""
+        return payload_link(self.model, name)
 
     def with_joint_effects(self, effects: Mapping[str, JointEffects]) -> Robot:
         """The same robot, whose joints take torque themselves.
@@ -333,28 +312,3 @@ class Robot:
                     )
         joints = tuple(replace(joint, effects=effects.get(joint.name, joint.effects)) for joint in self.model.joints)
         return Robot(replace(self.model, joints=joints))
-
-    def payload_link(self, name: str | None) -> int:
-        """The index of the link that a payload acts at; for None the only last link.
-
-        Raises:
-            UnknownNameError: no link is called so.
-            InputError: there is no name, and not exactly one last link.
-        """
-        if name is not None:
-            return self.model.link_index(name)
-        leaves = self.model.leaves()
-        if len(leaves) == 1:
-            return leaves[0]
-        names = ", ".join(self.link_names[i] for i in leaves) or "none"
-        raise InputError(
-            f"the payload names no link, and robot {self.name!r} has {len(leaves)} last links ({names}): "
-            "pass Wrench(..., link=NAME)"
-        )
-
-
-def _as_list(payload: Wrench | Sequence[Wrench] | None) -> list[Wrench]:
-    """None, one or several wrenches as a list."""
-    if payload is None:
-        return []
-    return [payload] if isinstance(payload, Wrench) or not isinstance(payload, Sequence) else list(payload)

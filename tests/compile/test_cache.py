@@ -478,8 +478,8 @@ def test_the_processor_and_the_compiler_are_in_the_name(asked: list[str], monkey
     """A home folder may be shared by machines that differ."""
     for name in ("llvm", "numpy"):
         robot().compile("tau", name)(*STATE)
-    monkeypatch.setenv("NUMBA_CPU_NAME", "generic")
-    monkeypatch.setenv("NUMBA_CPU_FEATURES", "")
+    monkeypatch.setenv("RTTRR_PIN_CPU_NAME", "generic")
+    monkeypatch.setenv("RTTRR_PIN_CPU_FEATURES", "")
     other = LlvmEmitter()
     assert other.identity != robot().compile("tau")._emitter.identity
     assert len(set(asked)) == 2

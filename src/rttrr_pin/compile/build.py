@@ -14,7 +14,7 @@ from rttrr_pin.compile.quantities import BOUND, QUANTITIES
 from rttrr_pin.compile.register_allocation import arranged
 from rttrr_pin.compile.simplify import simplify
 from rttrr_pin.compile.summation import order_sums
-from rttrr_pin.compile.trace import TRACING, TRACING_WITH_ERRORS, PayloadSlot, fields, outputs_of, record, trace
+from rttrr_pin.compile.trace import TRACING, TRACING_WITH_ERRORS, PayloadSlot, inputs_read, outputs_of, record, trace
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import Arithmetic
 from rttrr_pin.errors import InputError
@@ -118,5 +118,5 @@ def call_program(
     outliner = Outliner(Graph())
     arithmetic = replace(TRACING, call=outliner.call)
     results = record(outliner.graph, arithmetic, model, outputs, payloads, regrouped)
-    made = arranged(outliner, results, fields(model, outputs, payloads), outputs_of(model, outputs))
+    made = arranged(outliner, results, inputs_read(model, outputs, payloads), outputs_of(model, outputs))
     return replace(made, steps=tuple(replace(step, program=order_sums(step.program, fused)) for step in made.steps))

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import inspect
 import threading
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property, partial
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields, is_dataclass
+from functools import cached_property
 from math import prod
-from typing import Any
+from typing import Any, Generic, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,21 +15,23 @@ from numpy.typing import NDArray
 from rttrr_pin.compile import cache, emit, threads
 from rttrr_pin.compile.arrays import as_rows, check_out, readable, rows_in_place
 from rttrr_pin.compile.build import STRAIGHT_LINE, build
-from rttrr_pin.compile.emit import Emitter, Executable, emitter
+from rttrr_pin.compile.emit import Emitter, Executable, One, emitter
 from rttrr_pin.compile.program import Field, Program, Widths
 from rttrr_pin.compile.quantities import QUANTITIES
-from rttrr_pin.compile.shortcut import One, shortcut
-from rttrr_pin.compile.trace import PayloadSlot, fields, outputs_of
+from rttrr_pin.compile.trace import PayloadSlot, inputs_read, outputs_of
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.batch import common_shape
+from rttrr_pin.core.batch import common_shape, overflow
 from rttrr_pin.core.inputs import Coordinates, check_quaternions, coordinates, finite
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.model import Model
-from rttrr_pin.core.payload import Load
-from rttrr_pin.errors import InputError, NumberError, UnknownNameError
+from rttrr_pin.core.payload import Load, Payloads, loads_of
+from rttrr_pin.core.wrench import Wrench
+from rttrr_pin.errors import InputError, UnknownNameError
 
-LoadOf = Callable[[Any], list[Load]]
-"""What a user passes as payload, as loads of links."""
+Result = TypeVar("Result", Array, dict[str, Array])
+"""What a kernel returns: an array for a single output, a dict of them by name for several."""
+
+empty = np.empty
 
 
 @dataclass(frozen=True)
@@ -48,10 +49,26 @@ class Variant(Widths):
     executable: Executable
 
 
-class Kernel:
+@dataclass(frozen=True, slots=True)
+class LastPayload:
+    """The payload of the last call: a wrench never changes, so that what it means is looked up once.
+
+    Attributes:
+        payload: the wrench.
+        one: computes a state with it.
+        numbers: force and moment as `one` takes them.
+    """
+
+    payload: Wrench
+    one: One | None
+    numbers: tuple[Array, Array]
+
+
+class Kernel(Generic[Result]):
     """A robot's dynamics, compiled.
 
-    Made by `Robot.compile`. The first call compiles, or reads what another process has compiled before.
+    Made by `Robot.compile`. The first call compiles, or reads what another process has compiled before. A kernel can
+    be copied and pickled: a copy, in another process as well, loads its own code.
 
     Attributes:
         model: the robot.
@@ -62,7 +79,6 @@ class Kernel:
         self,
         model: Model,
         outputs: str | Sequence[str],
-        loads_of: LoadOf,
         emitter_name: str | None = None,
         straight_line: int = STRAIGHT_LINE,
     ) -> None:
@@ -74,15 +90,23 @@ class Kernel:
                 raise UnknownNameError("output", name, tuple(QUANTITIES))
         if not self.outputs or len(set(self.outputs)) < len(self.outputs):
             raise InputError(f"outputs is {outputs!r}: name at least one, and each once, of {', '.join(QUANTITIES)}")
-        self._loads_of = loads_of
-        self._straight_line = straight_line
+        self._emitter_name, self._straight_line = emitter_name, straight_line
         self._emitter: Emitter = emitter(emitter_name)
         self._variants: dict[tuple[PayloadSlot, ...], Variant] = {}
         self._lock = threading.Lock()
-        self._inputs = "".join(field.name for field in fields(model, self.outputs))
+        self._inputs = "".join(field.name for field in inputs_read(model, self.outputs))
+        self._reads = tuple(name in self._inputs for name in "qva")
         self._floats = bool(model.quaternions)
         self._widths = {"q": model.nq, "v": model.nv, "a": model.nv}
-        self._one: One | None = None
+        self._shapes = [field.shape for field in outputs_of(model, self.outputs)]
+        self._shape = self._shapes[0]
+        self._without_payload: One | None = None  # once it is compiled; of quaternions Python looks at each
+        self._one: One | None = None  # the same where all of q, v, a are read and one array is written
+        self._last: LastPayload | None = None
+
+    def __reduce__(self) -> tuple[object, ...]:
+        outputs = self.outputs[0] if self._single else self.outputs
+        return type(self), (self.model, outputs, self._emitter_name, self._straight_line)
 
     def __repr__(self) -> str:
         return f"<Kernel of {self.model.name!r}: {', '.join(self.outputs)} by {self._emitter.name}>"
@@ -115,10 +139,10 @@ class Kernel:
         q: Coordinates,
         v: Coordinates | None = None,
         a: Coordinates | None = None,
-        payload: Any = None,
-        out: Any = None,
+        payload: Payloads = None,
+        out: Result | None = None,
         threads: int | None = None,
-    ) -> Any:
+    ) -> Result:
         """Compute a batch of states.
 
         Every state goes through the same instructions, so its bits depend neither on its neighbours nor on the layout
@@ -142,30 +166,67 @@ class Kernel:
             NumberError: a value is NaN, inf, complex, ..., or so large that the result overflows.
             InputError: an argument is missing, or too many, or `out` is no float64 array that can be written.
         """
-        one = self._one  # on this thread
-        alone = threads is None or (type(threads) is int and threads == 1)
-        if one is not None and payload is None and alone and one(q, v, a, out):
-            return out
-        _check_threads(threads)
-        variant_loads = self._loads(payload)
+        # A control loop calls this with one state. Each line here costs a twentieth of the dynamics.
+        if threads is None:
+            if payload is None and self._one is not None:
+                answer: Result | None = self._one(q, v, a, empty(self._shape) if out is None else out)
+            else:
+                answer = self._at_once(q, v, a, payload, out)
+            if answer is not None:
+                return answer
+        return self._general(q, v, a, payload, out, threads)
+
+    def _at_once(self, q: Any, v: Any, a: Any, payload: Payloads, out: Any) -> Result | None:
+        """One state or few by the compiled entry for them; None where it declines, or is not there or not yet."""
+        if payload is None:
+            one, numbers = self._without_payload, ()
+        elif self._last is not None and self._last.payload is payload:
+            one, numbers = self._last.one, self._last.numbers
+        else:
+            return None
+        if one is None or (v is not None) is not self._reads[1] or (a is not None) is not self._reads[2]:
+            return None
+        states = (q, v, a) if self._reads[2] else (q, v) if self._reads[1] else (q,)
+        batch = q.shape[:-1] if out is None and type(q) is np.ndarray and q.ndim == 2 and len(q) <= emit.FEW else ()
+        if self._single:
+            answer: Result | None = one(*states, *numbers, empty(batch + self._shape) if out is None else out)
+            return answer
+        if out is None:
+            targets = [empty(batch + shape) for shape in self._shapes]
+            done = one(*states, *numbers, *targets) is not None
+            return cast("Result", dict(zip(self.outputs, targets, strict=True))) if done else None
+        if type(out) is not dict or out.keys() != set(self.outputs):
+            return None
+        return out if one(*states, *numbers, *(out[name] for name in self.outputs)) is not None else None
+
+    def _general(
+        self, q: Any, v: Any, a: Any, payload: Payloads, out: Result | None, wanted_threads: int | None
+    ) -> Result:
+        """The call for whatever is passed: any outputs and payload, batches, lists, dicts, errors."""
+        threads.count(wanted_threads, 0)  # an error also where nothing is to be computed
+        payloads = self._loads(payload)
+        variant = self._variant(tuple(PayloadSlot(load.link, load.in_base) for load in payloads))
+        if isinstance(payload, Wrench) and not self._floats:
+            self._last = LastPayload(payload, variant.executable.one, (payloads[0].f, payloads[0].n))
         arrays = self._arrays(q, v, a)
-        loads = {f"payload_{k}_{name}": getattr(load, name) for k, load in enumerate(variant_loads) for name in "fn"}
-        batch = common_shape({name: x.shape[:-1] for name, x in (arrays | loads).items()})
+        numbers = {
+            f"payload {name} at link {load.link + 1}{f' ({k + 1})' if len(payloads) > 1 else ''}": x
+            for k, load in enumerate(payloads)
+            for name, x in (("force", load.f), ("moment", load.n))
+        }
+        batch = common_shape({name: x.shape[:-1] for name, x in (arrays | numbers).items()})
         rows = prod(batch)
-        inputs = [as_rows(x, batch, rows) for x in (*arrays.values(), *loads.values())]
-        variant = self._variant(tuple(PayloadSlot(load.link, load.in_base) for load in variant_loads))
+        inputs = [as_rows(x, batch, rows) for x in (*arrays.values(), *numbers.values())]
         targets, results = self._targets(variant, out, batch, rows, inputs)
-        if rows and self._run(variant, inputs, targets, rows, threads):
-            self._explain(arrays, loads, variant, targets)
+        if rows and self._run(variant, inputs, targets, rows, wanted_threads):
+            self._explain(arrays, numbers, variant, (inputs, targets))
         return self._returned(results, targets, out)
 
-    def _loads(self, payload: Any) -> list[Load]:
-        if payload is None:
-            return []
+    def _loads(self, payload: Payloads) -> tuple[Load, ...]:
         deaf = [name for name in self.outputs if not QUANTITIES[name].payload]
-        if deaf:
+        if payload is not None and deaf:
             raise InputError(f"a payload was passed, but {deaf[0]} does not depend on it: leave it out")
-        return self._loads_of(payload)
+        return loads_of(self.model, payload)
 
     def _arrays(self, q: Any, v: Any, a: Any) -> dict[str, NDArray[Any]]:
         """The arguments that the outputs depend on, checked but for NaN and infinity, which the results betray."""
@@ -191,21 +252,10 @@ class Kernel:
                 found = self._variants.get(slots)
                 if found is None:
                     found = self._variants[slots] = self._compiled(slots)
-                    if not slots and not self._floats:  # quaternions are looked at in Python
-                        self._one = shortcut(found.executable.one, self._inputs, self.outputs, self._single)
-                        self._answer_at_once(found.executable)
+                    if not slots and not self._floats:
+                        self._without_payload = found.executable.one
+                        self._one = self._without_payload if self._single and all(self._reads) else None
         return found
-
-    def _answer_at_once(self, executable: Executable) -> None:
-        """Let compiled code take kernel(q, v, a, out=out): a `__call__` in Python takes longer than the dynamics."""
-        call = getattr(executable, "call", None)
-        if call is None or not self._single or self._inputs != "qva":
-            return
-        self._general = partial(Kernel.__call__, self)
-        answer = call(self._general, self)
-        if answer is not None:
-            self.__signature__ = inspect.signature(self._general)
-            self.__class__ = type("Kernel", (Kernel,), {"__call__": answer, "__doc__": Kernel.__doc__})
 
     def _compiled(self, slots: tuple[PayloadSlot, ...]) -> Variant:
         straight_line = self._straight_line if self._emitter.calls else None
@@ -215,7 +265,7 @@ class Kernel:
         if code is None:
             code = self._emitter.emit(build(self.model, self.outputs, slots, straight_line, self._emitter.fuses))
             cache.write(name, code)
-        inputs, outputs = fields(self.model, self.outputs, slots), outputs_of(self.model, self.outputs)
+        inputs, outputs = inputs_read(self.model, self.outputs, slots), outputs_of(self.model, self.outputs)
         return Variant(inputs, outputs, self._emitter.load(code, inputs, outputs))
 
     def _targets(
@@ -259,49 +309,55 @@ class Kernel:
         numbers = rows * (variant.width_in + variant.width_out)
         return threads.run(task, rows, threads.count(wanted, numbers))
 
-    def _returned(self, results: Sequence[Array], targets: Sequence[Array], out: Any) -> Any:
+    def _returned(self, results: Sequence[Array], targets: Sequence[Array], out: Result | None) -> Result:
         for result, target in zip(results, targets, strict=True):
             if not np.may_share_memory(result, target):
                 result[...] = target.reshape(result.shape)
         if out is not None:
             return out
-        return results[0] if self._single else dict(zip(self.outputs, results, strict=True))
+        return cast("Result", results[0] if self._single else dict(zip(self.outputs, results, strict=True)))
 
     def _explain(
-        self, arrays: Mapping[str, Any], loads: Mapping[str, Any], variant: Variant, targets: Sequence[Array]
+        self,
+        arrays: Mapping[str, Any],
+        numbers: Mapping[str, Any],
+        variant: Variant,
+        rows: tuple[Sequence[NDArray[Any]], Sequence[Array]],
     ) -> None:
         """Name the number that is not finite, or the state that overflows."""
         for name, x in arrays.items():
             finite(name, x, _labels(name, self.model.moving))
-        for name, x in loads.items():
+        for name, x in numbers.items():
             finite(name, x)
+        inputs, targets = rows
         for field, target in zip(variant.outputs, targets, strict=True):
             bad = np.argwhere(~np.isfinite(target))
             if len(bad):
-                raise NumberError(
-                    f"{field.name} overflows in state {int(bad[0][0])}: "
-                    "pass coordinates of a size that a robot can have, in rad, m and s",
-                    name=field.name,
-                    index=(int(bad[0][0]),),
-                )
+                raise overflow(field.name, int(bad[0][0]), dict(zip(self._inputs, inputs, strict=False)))
 
 
 def fingerprint(model: Model) -> bytes:
-    """Every number of a robot that a program can depend on."""
-    parts: list[object] = [model.gravity.tobytes()]
-    for link, joint in zip(model.links, model.joints, strict=True):
-        effects, mimic = joint.effects, joint.mimic
-        parts += [link.mass, link.com.tobytes(), link.inertia.tobytes(), repr(joint.type), joint.parent]
-        parts += [joint.R.tobytes(), joint.p.tobytes(), joint.axis.tobytes()]
-        parts += [effects.armature, effects.damping, effects.friction]
-        parts += [mimic and (mimic.joint, mimic.multiplier, mimic.offset)]
-    return repr(parts).encode()
+    """Everything of a robot that a program can depend on: all data but names, the provenance of numbers included.
+
+    Two robots of equal numbers can need two programs: a tensor that was turned is rounded, one that was read is not.
+    """
+    return repr([model.gravity.tobytes(), _data(model.links), _data(model.joints)]).encode()
+
+
+def _data(x: object) -> object:
+    """An object as what `repr` tells apart; arrays by their bits."""
+    if isinstance(x, np.ndarray):
+        return x.tobytes()
+    if isinstance(x, tuple):
+        return [_data(item) for item in x]
+    if is_dataclass(x):
+        return [type(x).__name__, *(_data(getattr(x, own.name)) for own in fields(x) if own.name not in UNREAD)]
+    return x
+
+
+UNREAD = {"name", "limits", "dynamics"}
+"""What of links and joints no program reads."""
 
 
 def _labels(name: str, joints: Sequence[Joint]) -> list[str]:
     return [label for joint in joints for label in (joint.q_labels() if name == "q" else joint.v_labels())]
-
-
-def _check_threads(wanted: int | None) -> None:
-    """Also where nothing is to be computed."""
-    threads.count(wanted, 0)

@@ -59,7 +59,7 @@ def trace(
     """
     graph = Graph(most=most)
     results = record(graph, arithmetic or TRACING, model, outputs, payloads, regrouped)
-    return Program(graph, fields(model, outputs, payloads), outputs_of(model, outputs), results)
+    return Program(graph, inputs_read(model, outputs, payloads), outputs_of(model, outputs), results)
 
 
 def record(
@@ -70,7 +70,7 @@ def record(
     payloads: Sequence[PayloadSlot],
     regrouped: bool = True,
 ) -> tuple[int, ...]:
-    """Run the specification on nodes of a graph, whose first inputs are the numbers of `fields`.
+    """Run the specification on nodes of a graph, whose first inputs are the numbers of `inputs_read`.
 
     Args:
         graph: where to record.
@@ -87,7 +87,7 @@ def record(
     links: Sequence[Body] | None = None
     if regrouped and not any(quantity.of_links for quantity in wanted):
         model, links = regroup(model, bodies(model, arithmetic))
-    inputs = fields(model, outputs, payloads)
+    inputs = inputs_read(model, outputs, payloads)
     columns = (Node(graph, graph.input(place)) for place in range(sum(field.width for field in inputs)))
     given = {field.name: [next(columns) for _ in range(field.width)] for field in inputs}
     motion = Motion(
@@ -110,7 +110,7 @@ def outputs_of(model: Model, outputs: Sequence[str]) -> tuple[Field, ...]:
     return tuple(Field(name, QUANTITIES[name].shape(model)) for name in outputs)
 
 
-def fields(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot] = ()) -> tuple[Field, ...]:
+def inputs_read(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot] = ()) -> tuple[Field, ...]:
     """The arrays that a program reads: what its outputs depend on, then force and moment of each payload."""
     sizes = {"q": model.nq, "v": model.nv, "a": model.nv}
     needed = [name for name in sizes if any(name in QUANTITIES[output].inputs for output in outputs)]

@@ -100,12 +100,17 @@ def check_overflow(out: LinkWrenches, q: Array, v: Array, a: Array) -> None:
     for key, x in out.items():
         if not np.isfinite(x).all():
             row = int(np.argwhere(~np.isfinite(x))[0][0])
-            sizes = {name: float(np.abs(y[row]).max(initial=0.0)) for name, y in (("q", q), ("v", v), ("a", a))}
-            largest = max(sizes, key=sizes.__getitem__)
-            raise NumberError(
-                f"{key} overflows in state {row}, where |{largest}| reaches {sizes[largest]:.3g}: "
-                "pass coordinates of a size that a robot can have, in rad, m and s",
-                name=largest,
-                index=(row,),
-                value=sizes[largest],
-            )
+            raise overflow(key, row, {"q": q, "v": v, "a": a})
+
+
+def overflow(quantity: str, row: int, arrays: Mapping[str, Array]) -> NumberError:
+    """The error of a state whose result is too large for float64, by the largest of its coordinates."""
+    sizes = {name: float(np.abs(x[row]).max(initial=0.0)) for name, x in arrays.items()}
+    largest = max(sizes, key=sizes.__getitem__)
+    return NumberError(
+        f"{quantity} overflows in state {row}, where |{largest}| reaches {sizes[largest]:.3g}: "
+        "pass coordinates of a size that a robot can have, in rad, m and s",
+        name=largest,
+        index=(row,),
+        value=sizes[largest],
+    )

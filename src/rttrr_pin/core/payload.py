@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 import numpy as np
 
 from rttrr_pin.core.algebra import Vector
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.model import Model
 from rttrr_pin.core.newton_euler import Payload
 from rttrr_pin.core.scalars import Arithmetic, columns
+from rttrr_pin.core.wrench import Wrench
 from rttrr_pin.errors import InputError
 
 
@@ -35,6 +38,54 @@ class Load:
         """The same for some states of the batch."""
         f, n = (x if x.ndim == 1 else x[part] for x in (self.f, self.n))
         return Load(self.link, f, n, self.in_base)
+
+
+Payloads: TypeAlias = "Wrench | Load | Sequence[Wrench | Load] | None"
+"""What is passed as payload: none, one or several, with the link's name or its index."""
+
+
+def loads_of(model: Model, payload: Payloads) -> tuple[Load, ...]:
+    """Payloads at the indices of their links.
+
+    Raises:
+        InputError: it is no wrench, or names no link where there are several last ones.
+        UnknownNameError: no link is called so.
+    """
+    if payload is None:
+        return ()
+    several = isinstance(payload, Sequence)
+    return tuple(load_of(model, own) for own in payload) if several else (load_of(model, payload),)
+
+
+def load_of(model: Model, payload: Wrench | Load) -> Load:
+    """One of `loads_of`."""
+    if isinstance(payload, Load):
+        return payload
+    if not isinstance(payload, Wrench):
+        raise InputError(
+            f"payload is a {type(payload).__name__}, expected a Wrench: pass Wrench(force=..., moment=...)"
+        )
+    f, n = np.asarray(payload.force, np.float64), np.asarray(payload.moment, np.float64)
+    return Load(payload_link(model, payload.link), f, n, payload.expressed_in == "base")
+
+
+def payload_link(model: Model, name: str | None) -> int:
+    """The index of the link that a payload acts at; for None the only last link.
+
+    Raises:
+        UnknownNameError: no link is called so.
+        InputError: there is no name, and not exactly one last link.
+    """
+    if name is not None:
+        return model.link_index(name)
+    leaves = model.leaves()
+    if len(leaves) == 1:
+        return leaves[0]
+    names = ", ".join(model.link_names[i] for i in leaves) or "none"
+    raise InputError(
+        f"the payload names no link, and robot {model.name!r} has {len(leaves)} last links ({names}): "
+        "pass Wrench(..., link=NAME)"
+    )
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,9 +6,11 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.inputs import vectors
 from rttrr_pin.errors import InputError, ShapeError, UnknownNameError
 
 LINK_QUANTITIES = ("F", "N", "f", "n")
@@ -30,6 +32,12 @@ class Wrench:
         moment: n_tool about the origin of the link frame, (..., 3) [N m].
         link: the link whose frame it acts at; None: the tool, that is the robot's only last link.
         expressed_in: the axes of force and moment: `"link"` (that link's frame) or `"base"`.
+
+    Force and moment are kept as read-only copies, float64, so that a wrench never changes.
+
+    Raises:
+        InputError: there are no such axes.
+        ShapeError, NumberError: force or moment is no vector of finite numbers.
     """
 
     force: ArrayLike
@@ -42,6 +50,10 @@ class Wrench:
             raise InputError(
                 f"payload expressed_in is {self.expressed_in!r}: expected 'link' (the frame it acts at) or 'base'"
             )
+        for name in ("force", "moment"):
+            own = np.array(vectors(f"payload {name}", getattr(self, name)))
+            own.setflags(write=False)
+            object.__setattr__(self, name, own)
 
 
 @dataclass(frozen=True, eq=False, slots=True)

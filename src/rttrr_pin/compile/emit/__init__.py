@@ -24,15 +24,22 @@ Task = Callable[[int, int], bool]
 """Computes the states from start to stop; tells whether a result is not finite."""
 
 
+One = Callable[..., Any]
+"""Computes one state of float64 arrays, or up to `FEW`: `one(q, v, a, ..., tau) -> tau`, the last of its arguments, or
+None where it declines what it was given, or a result is not finite."""
+
+FEW = 4096
+"""States that `Executable.one` computes in one call; more are worth threads, and must not hold up Ctrl-C."""
+
+
 class Executable(Protocol):
     """A program that can be run.
 
     Attributes:
-        one: computes one state of float64 arrays, `one(q, v, a, tau) -> True`, or returns None where it declines (then
-            `bind` does it); None where there is no such shortcut.
+        one: the entry for one state or few; None where there is none, and `bind` does all.
     """
 
-    one: Callable[..., bool | None] | None
+    one: One | None
 
     def bind(self, inputs: Sequence[Array], outputs: Sequence[NDArray[np.float64]]) -> Task:
         """The task of computing these outputs from these inputs; it may run in several threads at once."""

@@ -6,15 +6,12 @@ ctypes takes longer to hand over four arrays than the dynamics of one state take
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
-from typing import Any
 
 import numpy as np
 
-METH_FASTCALL = 0x0080
+from rttrr_pin.compile.emit import One
 
-One = Callable[..., Any]
-"""Computes one state, or few, of float64 arrays, inputs and then outputs; None where it declines what it was given."""
+METH_FASTCALL = 0x0080
 
 
 class _Method(ctypes.Structure):

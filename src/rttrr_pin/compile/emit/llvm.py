@@ -38,6 +38,9 @@ SECOND_LEVEL = 512 * 1024
 
 OPTIMISATION = 2
 
+CPU, CPU_FEATURES = "RTTRR_PIN_CPU", "RTTRR_PIN_CPU_FEATURES"
+"""Variables of the environment that choose another processor than the one at hand, by LLVM's names."""
+
 
 @cache
 def _initialised() -> None:
@@ -47,9 +50,9 @@ def _initialised() -> None:
 
 def _processor() -> tuple[str, str]:
     """Name and features of the processor to compile for; the environment may choose another."""
-    name = os.environ.get("NUMBA_CPU_NAME") or llvm.get_host_cpu_name()
-    named = "NUMBA_CPU_NAME" in os.environ
-    features = os.environ.get("NUMBA_CPU_FEATURES", "" if named else llvm.get_host_cpu_features().flatten())
+    name = os.environ.get(CPU) or llvm.get_host_cpu_name()
+    named = CPU in os.environ
+    features = os.environ.get(CPU_FEATURES, "" if named else llvm.get_host_cpu_features().flatten())
     return name, features
 
 

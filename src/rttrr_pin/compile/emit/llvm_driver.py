@@ -2,8 +2,8 @@
 
     int64 run(int64 *arrays, int64 start, int64 stop)    1 where a result is not finite, -1 without memory
 
-and `one`, which CPython calls, see `llvm_python`. `arrays` has `RECORD` numbers for each input, then each output: address,
-distance in bytes from state to state and from column to column, count of columns, 1 for float32.
+and `one`, which CPython calls, see `llvm_python`. `arrays` has `RECORD` numbers for each input, then each output:
+address, distance in bytes from state to state and from column to column, count of columns, 1 for float32.
 """
 
 from __future__ import annotations

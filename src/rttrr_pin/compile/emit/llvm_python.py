@@ -15,12 +15,10 @@ from itertools import combinations, product
 
 from llvmlite import ir
 
+from rttrr_pin.compile.emit import FEW
 from rttrr_pin.compile.emit.llvm_block import Array, Block, compute
 from rttrr_pin.compile.emit.llvm_columns import I1, I32, I64, PTR, Writer, function, number, untyped
 from rttrr_pin.compile.program import Field
-
-MOST = 4096
-"""States that `one` computes in one call; more are worth threads, and must not hold up Ctrl-C."""
 
 CONTEXT = ("ndarray", "none")
 """Python objects whose addresses are set after loading."""
@@ -118,7 +116,7 @@ class _One:
         batched = b.zext(axes, I64)
         several = b.icmp_signed("==", batched, number(1))
         m = b.select(several, w.load(I64, w.load(PTR, w.offset(view, VIEW["shape"]))), number(1))
-        w.require(b.and_(b.icmp_signed(">=", m, number(1)), b.icmp_signed("<=", m, number(MOST))), self.decline)
+        w.require(b.and_(b.icmp_signed(">=", m, number(1)), b.icmp_signed("<=", m, number(FEW))), self.decline)
         return batched, m
 
     def _array(self, view: ir.Value, field: Field, batched: ir.Value, m: ir.Value, output: bool) -> Array:
@@ -138,7 +136,8 @@ class _One:
             return Array(data, row, number(8))
         column = w.load(I64, w.offset(strides, first))
         in_rows = b.and_(
-            b.icmp_signed("==", column, number(8)), b.icmp_signed("==", b.select(several, w.load(I64, strides), row), row)
+            b.icmp_signed("==", column, number(8)),
+            b.icmp_signed("==", b.select(several, w.load(I64, strides), row), row),
         )
         w.require(b.or_(in_rows, b.not_(several)), self.decline)
         return Array(data, row, column)
