@@ -21,8 +21,7 @@ from rttrr_pin.compile.constants import ConstantWithError, error_of, exactly
 from rttrr_pin.compile.emit import EMITTERS
 from rttrr_pin.compile.expression import Graph, Node, Op
 from rttrr_pin.compile.regrouping import regroup
-from rttrr_pin.compile.simplify import collect
-from rttrr_pin.compile.trace import TRACING, TRACING_WITH_ERRORS, trace
+from rttrr_pin.compile.trace import TRACING, TRACING_WITH_ERRORS
 from rttrr_pin.core.dynamics import bodies
 from rttrr_pin.core.scalars import UNIT_ROUNDOFF
 from rttrr_pin.exact import bounded_dynamics, enclose
@@ -302,15 +301,6 @@ def test_the_operations_of_the_values_are_those_of_the_plain_kernel(robot: Robot
     ]
     mine, theirs = count(bounded.graph, values), count(plain.graph, plain.results)
     assert mine[0] == theirs[0] and sum(mine[1:]) == sum(theirs[1:])
-
-
-def test_collecting_keeps_errors() -> None:
-    """Sums collected by coefficients whose values are equal and whose errors differ."""
-    model = rttrr_pin.load(random_chain(2, ("revolute", "continuous"))).model
-    for arithmetic in (TRACING, TRACING_WITH_ERRORS):
-        program = collect(trace(model, ("tau", "N"), regrouped=False, arithmetic=arithmetic))
-        errors_kept = [error_of(x) for x in program.graph.value.values()]
-        assert bool(max(errors_kept)) == (arithmetic is TRACING_WITH_ERRORS)
 
 
 def test_a_bound_alone_can_be_asked_for(rttrr: Robot) -> None:

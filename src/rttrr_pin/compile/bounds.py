@@ -54,7 +54,7 @@ def with_bounds(
         plain = output.name.removesuffix(BOUND)
         nodes = [program.results[place] for place in places[plain]]
         results += [bounder.bound_of(x) if output.name.endswith(BOUND) else bounder.values[x].number for x in nodes]
-    return Program(bounder.graph, program.inputs, outputs, tuple(results), program.placed_first)
+    return Program(bounder.graph, program.inputs, outputs, tuple(results))
 
 
 @dataclass

@@ -12,7 +12,6 @@ from rttrr_pin.compile.outlining import Outliner
 from rttrr_pin.compile.program import Program
 from rttrr_pin.compile.quantities import BOUND, QUANTITIES
 from rttrr_pin.compile.register_allocation import arranged
-from rttrr_pin.compile.simplify import simplify
 from rttrr_pin.compile.summation import order_sums
 from rttrr_pin.compile.trace import TRACING, TRACING_WITH_ERRORS, PayloadSlot, inputs_read, outputs_of, record, trace
 from rttrr_pin.core.model import Model
@@ -50,7 +49,7 @@ def build(
         fused: whether products may be fused with sums; without, operations can be counted.
 
     Returns:
-        Straight lines or calls, simplified, with sums in chains.
+        Straight lines or calls, with sums in chains.
 
     Raises:
         InputError: the robot is too large for these outputs.
@@ -58,19 +57,19 @@ def build(
     if any(name.endswith(BOUND) for name in outputs):
         return _bounded(model, outputs, payloads, fused)
     if straight_line is None or not all(QUANTITIES[name].by_steps for name in outputs):
-        return order_sums(simplify(_whole(model, outputs, payloads)), fused)
+        return order_sums(_whole(model, outputs, payloads), fused)
     try:
         program = trace(model, outputs, payloads, most=straight_line * NODES)
     except GraphFullError:
         return call_program(model, outputs, payloads, fused=fused)
     short = program.operations.total <= straight_line
-    return order_sums(simplify(program), fused) if short else call_program(model, outputs, payloads, fused=fused)
+    return order_sums(program, fused) if short else call_program(model, outputs, payloads, fused=fused)
 
 
 def _bounded(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot], fused: bool) -> Program:
     """Values and bounds on their rounding."""
     plain = tuple(dict.fromkeys(name.removesuffix(BOUND) for name in outputs))
-    program = simplify(_whole(model, plain, payloads, TRACING_WITH_ERRORS, WITH_BOUNDS))
+    program = _whole(model, plain, payloads, TRACING_WITH_ERRORS, WITH_BOUNDS)
     chained = order_sums(program, fused)
     # q comes first among the inputs, so that places in q are places among the inputs
     quaternions = model.quaternions if any(field.name == "q" for field in program.inputs) else ()
@@ -113,7 +112,7 @@ def call_program(
         fused: whether products may be fused with sums.
 
     Returns:
-        Calls of steps, each step simplified, with sums in chains.
+        Calls of steps, with sums in chains.
     """
     outliner = Outliner(Graph())
     arithmetic = replace(TRACING, call=outliner.call)

@@ -31,6 +31,8 @@ from rttrr_pin.errors import InputError, UnknownNameError
 Result = TypeVar("Result", Array, dict[str, Array])
 """What a kernel returns: an array for a single output, a dict of them by name for several."""
 
+NO_NUMBERS: tuple[Array, ...] = ()
+
 empty = np.empty
 
 
@@ -61,7 +63,7 @@ class LastPayload:
 
     payload: Wrench
     one: One | None
-    numbers: tuple[Array, Array]
+    numbers: tuple[Array, ...]
 
 
 class Kernel(Generic[Result]):
@@ -178,12 +180,11 @@ class Kernel(Generic[Result]):
 
     def _at_once(self, q: Any, v: Any, a: Any, payload: Payloads, out: Any) -> Result | None:
         """One state or few by the compiled entry for them; None where it declines, or is not there or not yet."""
-        if payload is None:
-            one, numbers = self._without_payload, ()
-        elif self._last is not None and self._last.payload is payload:
-            one, numbers = self._last.one, self._last.numbers
-        else:
-            return None
+        one, numbers, last = self._without_payload, NO_NUMBERS, self._last  # another thread may change them
+        if payload is not None:
+            if last is None or last.payload is not payload:
+                return None
+            one, numbers = last.one, last.numbers
         if one is None or (v is not None) is not self._reads[1] or (a is not None) is not self._reads[2]:
             return None
         states = (q, v, a) if self._reads[2] else (q, v) if self._reads[1] else (q,)
@@ -197,7 +198,8 @@ class Kernel(Generic[Result]):
             return cast("Result", dict(zip(self.outputs, targets, strict=True))) if done else None
         if type(out) is not dict or out.keys() != set(self.outputs):
             return None
-        return out if one(*states, *numbers, *(out[name] for name in self.outputs)) is not None else None
+        done = one(*states, *numbers, *(out[name] for name in self.outputs)) is not None
+        return cast("Result", out) if done else None
 
     def _general(
         self, q: Any, v: Any, a: Any, payload: Payloads, out: Result | None, wanted_threads: int | None

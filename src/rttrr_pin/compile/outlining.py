@@ -18,7 +18,6 @@ from rttrr_pin.compile.call_program import Step
 from rttrr_pin.compile.call_signature import Leaf, answer, arguments, built
 from rttrr_pin.compile.expression import Graph, Node, Op
 from rttrr_pin.compile.program import Field, Program, inputs_of
-from rttrr_pin.compile.simplify import simplify
 
 
 @dataclass(eq=False)
@@ -56,7 +55,7 @@ class Recorded:
         """As a program of what is live, once that is known."""
         results = tuple(self.outputs[k] for k in sorted(self.live))
         fields = (Field("scalars", (len(self.is_column),)),), (Field("results", (len(results),)),)
-        program = simplify(Program(self.graph, *fields, results))
+        program = Program(self.graph, *fields, results)
         read = inputs_of(program.graph, program.results)
         columns = tuple(place for place in read if self.is_column[place])
         return Step(program, columns, tuple(place for place in read if not self.is_column[place]))

@@ -83,14 +83,12 @@ class Program(Widths):
         inputs: the arrays it reads; the graph's inputs are their numbers, one array after the other.
         outputs: the arrays it writes.
         results: for each number of the outputs, one array after the other, the node that computes it.
-        placed_first: whether all placements stand first (see `order`), or the nodes by their numbers.
     """
 
     graph: Graph
     inputs: tuple[Field, ...]
     outputs: tuple[Field, ...]
     results: tuple[int, ...]
-    placed_first: bool = True
 
     @cached_property
     def order(self) -> tuple[int, ...]:
@@ -100,8 +98,6 @@ class Program(Widths):
         Talos need fewer instructions than link by link, as the specification has it.
         """
         nodes = self.graph.reachable(self.results)
-        if not self.placed_first:
-            return tuple(nodes)
         behind: set[int] = set()
         for x in nodes:
             args = self.graph.args[x] if self.graph.op[x] not in LEAVES else ()

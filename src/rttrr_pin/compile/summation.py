@@ -70,7 +70,7 @@ class _Chainer:
                 if x in old.graph.kept:
                     self.graph.kept.add(self._bare(self.built[x])[0])
         results = tuple(self.built[x] for x in old.results)
-        return Program(self.graph, old.inputs, old.outputs, results, old.placed_first)
+        return Program(self.graph, old.inputs, old.outputs, results)
 
     def _opens(self, x: int) -> bool:
         """Whether a term of a sum is a sum that is needed nowhere else."""

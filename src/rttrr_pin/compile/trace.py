@@ -52,7 +52,7 @@ def trace(
         arithmetic: `TRACING` or `TRACING_WITH_ERRORS`; None for the former.
 
     Returns:
-        The program as the specification's operations leave it; `simplify` shortens it.
+        The program as the operations of the recursion leave it.
 
     Raises:
         GraphFullError: it takes more nodes.

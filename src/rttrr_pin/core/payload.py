@@ -40,7 +40,7 @@ class Load:
         return Load(self.link, f, n, self.in_base)
 
 
-Payloads: TypeAlias = "Wrench | Load | Sequence[Wrench | Load] | None"
+Payloads: TypeAlias = Wrench | Load | Sequence[Wrench | Load] | None
 """What is passed as payload: none, one or several, with the link's name or its index."""
 
 
@@ -53,8 +53,9 @@ def loads_of(model: Model, payload: Payloads) -> tuple[Load, ...]:
     """
     if payload is None:
         return ()
-    several = isinstance(payload, Sequence)
-    return tuple(load_of(model, own) for own in payload) if several else (load_of(model, payload),)
+    if isinstance(payload, Sequence):
+        return tuple(load_of(model, own) for own in payload)
+    return (load_of(model, payload),)
 
 
 def load_of(model: Model, payload: Wrench | Load) -> Load:

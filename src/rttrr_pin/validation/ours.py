@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from rttrr_pin.compile import Kernel
-from rttrr_pin.core.payload import Load
-from rttrr_pin.core.wrench import QUANTITIES, LinkWrenches, Wrench
+from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.wrench import QUANTITIES, LinkWrenches
 from rttrr_pin.errors import NumberError
 from rttrr_pin.exact import bounded_dynamics
-from rttrr_pin.robot import KERNEL_FROM, Robot
+from rttrr_pin.robot import Robot
 from rttrr_pin.validation.states import States
 
 COMPUTED = (*QUANTITIES, "tau_joint")
 
+KERNEL_FROM = 8192
+"""States from which a kernel with bounds is compiled for a robot of at most `SMALL` links."""
+
 SMALL = 12
-"""Links up to which a kernel with bounds compiles in a second or two, and is taken for as many states as
-`Robot.inverse_dynamics` takes one for."""
+"""Links up to which it compiles in a second or two."""
 
 MANY = 150_000
 """States from which compiling costs less than it saves for robots of any size."""
@@ -39,7 +39,7 @@ class Ours:
         pays = states >= (KERNEL_FROM if links <= SMALL else MANY) and links <= LARGEST
         outputs = (*COMPUTED, *(f"{name}_bound" for name in COMPUTED))
         self.robot = robot
-        self.kernel: Kernel | None = robot.compile(outputs) if pays else None
+        self.kernel: Kernel[dict[str, Array]] | None = robot.compile(outputs) if pays else None
 
     @property
     def name(self) -> str:
@@ -55,14 +55,8 @@ class Ours:
                 pass
         return bounded_dynamics(self.robot.model, drawn.q, drawn.v, drawn.a, drawn.loads)
 
-    def _compiled(self, kernel: Kernel, drawn: States) -> tuple[LinkWrenches, LinkWrenches]:
-        payload = [self._wrench(load, len(drawn.q)) for load in drawn.loads]
-        result = kernel(drawn.q, drawn.v, drawn.a, payload=payload or None)
+    def _compiled(self, kernel: Kernel[dict[str, Array]], drawn: States) -> tuple[LinkWrenches, LinkWrenches]:
+        result = kernel(drawn.q, drawn.v, drawn.a, payload=drawn.loads or None)
         links, joints = self.robot.link_names, self.robot.model.v_names
         values, bounds = ({name: result[name + end] for name in COMPUTED} for end in ("", "_bound"))
         return LinkWrenches.of(values, links, joints), LinkWrenches.of(bounds, links, joints)
-
-    def _wrench(self, load: Load, rows: int) -> Wrench:
-        force, moment = (np.broadcast_to(x, (rows, 3)) for x in (load.f, load.n))
-        axes = "base" if load.in_base else "link"
-        return Wrench(force, moment, self.robot.link_names[load.link], axes)  # type: ignore[arg-type]
