@@ -74,7 +74,7 @@ class Timed:
         self.given = (s.q, s.v, s.a)
         self.first = [np.ascontiguousarray(x[0]) for x in self.given]
         self.out, self.one = np.empty((self.states, self.robot.model.nv)), np.empty(self.robot.model.nv)
-        self.kernel = Kernel(self.robot.model, "tau", self.robot._loads, straight_line=self.straight_line)
+        self.kernel = Kernel(self.robot.model, "tau", straight_line=self.straight_line)
         self.figures["compile_s"] = round(seconds(lambda: self.kernel(*self.first), 1), 2)
         ours = self.kernel(*self.given, out=self.out, threads=1)[:COMPARED]
         reference = self.robot.inverse_dynamics(*(x[:COMPARED] for x in self.given)).tau

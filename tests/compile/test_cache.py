@@ -409,18 +409,19 @@ def neighbours(model: Model) -> Iterator[Model]:
     for gravity in nudged(model.gravity):
         yield model.with_gravity(gravity)
     for i, (link, joint) in enumerate(zip(model.links, model.joints, strict=True)):
-        links = list(nudged_fields(link, ("com",), ("mass",)))
+        links = [*nudged_fields(link, ("com",), ("mass",)), replace(link, rotated=not link.rotated)]
         for a, b in itertools.combinations_with_replacement(range(3), 2):
             tensor = link.inertia.copy()
             tensor[a, b] = tensor[b, a] = np.nextafter(tensor[a, b], np.inf)
             links.append(replace(link, inertia=tensor))
-        joints = list(nudged_fields(joint, ("R", "p", "axis")))
+        joints = [*nudged_fields(joint, ("R", "p", "axis")), replace(joint, rotated=not joint.rotated)]
         names = [field.name for field in fields(JointEffects)]
         joints += [replace(joint, effects=effects) for effects in nudged_fields(joint.effects, (), names)]
         joints += [replace(joint, effects=JointEffects(0.3, 0.1, 0.2))]
         if joint.mimic is not None:
             joints += [replace(joint, mimic=x) for x in nudged_fields(joint.mimic, (), ("multiplier", "offset"))]
             joints += [replace(joint, mimic=replace(joint.mimic, joint=1)), replace(joint, mimic=None)]
+            joints += [replace(joint, mimic=replace(joint.mimic, rounded=True))]
         joints += [
             replace(joint, type=kind) for kind in JOINT_TYPES.values() if kind.rotates and kind is not joint.type
         ]
@@ -435,12 +436,22 @@ def neighbours(model: Model) -> Iterator[Model]:
     yield model.without_joint_effects()
 
 
-def test_every_number_of_a_robot_is_in_its_fingerprint() -> None:
+def test_every_number_of_a_robot_is_in_its_fingerprint_and_where_it_comes_from() -> None:
     models = [rich(), *neighbours(rich())]
     prints = [fingerprint(model) for model in models]
     assert len(models) > 100
     assert len(set(prints)) == len(prints)
     assert fingerprint(rich()) == prints[0]
+
+
+def test_equal_numbers_of_other_provenance_share_no_bounds(folder: Path) -> None:
+    """A tensor that was turned is rounded, and its robot's bounds are larger than those of one that was read."""
+    link, joint = rich().links[0], rich().joints[0]
+    bounds = []
+    for rotated in (False, True):
+        model = Model("one", Link("base"), (replace(link, rotated=rotated),), (replace(joint, parent=-1),))
+        bounds.append(Robot(model).compile("N_bound")(*STATE)[0])
+    assert (bounds[1] > bounds[0]).any()
 
 
 def test_names_and_limits_make_no_other_program() -> None:

@@ -44,7 +44,7 @@ def own_cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 def forced(robot: Robot, outputs: str | Sequence[str], emitter: str | None = None) -> Kernel:
     """Calls of steps also for a robot that is small."""
-    return Kernel(robot.model, outputs, robot._loads, emitter, straight_line=0)
+    return Kernel(robot.model, outputs, emitter, straight_line=0)
 
 
 def chain(joints: int) -> Robot:
@@ -90,7 +90,7 @@ def test_each_output_alone_is_that_of_straight_lines(name: str, seed: int) -> No
     robot = rttrr_pin.load(random_tree(seed, 7), friction=True)
     s = states(robot, seed)
     given = [getattr(s, x) for x in QUANTITIES[name].inputs]
-    straight = Kernel(robot.model, name, robot._loads, straight_line=10**9)
+    straight = Kernel(robot.model, name, straight_line=10**9)
     for x, y in zip(forced(robot, name)(*given), straight(*given), strict=True):
         assert norm_error(x, y) <= ROUNDING
 
@@ -146,7 +146,7 @@ def test_bounds_count_among_what_is_too_long(rttrr: Robot, monkeypatch: pytest.M
 
 def test_emitters_that_know_no_calls_get_straight_lines(rttrr: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
     assert set(BY_CALLS) == {"llvm", "numpy"}
-    monkeypatch.setattr(build, "schedule", None)
+    monkeypatch.setattr(build, "call_program", None)
     monkeypatch.setattr(type(emitter("numpy")), "calls", False)
     s = states(rttrr, 0)
     assert (
@@ -241,9 +241,9 @@ def test_what_comes_from_disk_is_the_same(rttrr: Robot, monkeypatch: pytest.Monk
     """And straight lines are told from calls."""
     s = states(rttrr, 0)
     first = forced(rttrr, "tau")(s.q, s.v, s.a)
-    monkeypatch.setattr(build, "schedule", None)
+    monkeypatch.setattr(build, "call_program", None)
     np.testing.assert_array_equal(forced(rttrr, "tau")(s.q, s.v, s.a), first)
-    straight = Kernel(rttrr.model, "tau", rttrr._loads)(s.q, s.v, s.a)
+    straight = Kernel(rttrr.model, "tau")(s.q, s.v, s.a)
     assert norm_error(straight, first) <= ROUNDING
     assert len(list((cache.folder() or Path()).glob("*.kernel"))) == 2
 

@@ -14,7 +14,7 @@ import pytest
 import rttrr_pin
 from rttrr_pin import JointEffects, Robot, Wrench
 from rttrr_pin.compile.cache import VARIABLE
-from rttrr_pin.compile.emit import EMITTERS, c, emitter, numba
+from rttrr_pin.compile.emit import EMITTERS, c, emitter
 from rttrr_pin.compile.expression import Graph, Op
 from rttrr_pin.compile.program import Field, Program
 from rttrr_pin.compile.sincos import LARGEST
@@ -180,17 +180,6 @@ def test_a_robot_that_cannot_move(name: str) -> None:
     robot = rttrr_pin.load(random_tree(0, 2, types=("fixed",)))
     nothing = np.zeros((3, 0))
     assert robot.compile(emitter=name)(nothing, nothing, nothing).shape == (3, 0)
-
-
-def test_numba_in_many_functions(rttrr: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Values pass from one to the next; what goes through more than one comes out the same."""
-    monkeypatch.setattr(numba, "SEGMENT", 50)
-    made = rttrr.compile(emitter="numpy").program
-    assert len(numba.Plan.of(made).parts) > 4
-    q, v, a = states(rttrr, 70)
-    how, tau = emitter("numba"), np.empty((70, 5))
-    assert not how.load(how.emit(made), made.inputs, made.outputs).bind([q, v, a], [tau])(0, 70)
-    assert norm_error(tau, rttrr.inverse_dynamics(q, v, a).tau) <= ROUNDING
 
 
 # ---- the same bits
@@ -409,7 +398,7 @@ def test_a_c_compiler_that_fails_is_named(rttrr: Robot, monkeypatch: pytest.Monk
         rttrr.with_joint_effects({}).compile(emitter="c")(*states(rttrr, 1))
 
 
-@pytest.mark.parametrize("name", ["c", "numba"])
+@pytest.mark.parametrize("name", ["c", "numpy"])
 def test_what_is_kept_on_disk_is_text_without_addresses(rttrr: Robot, name: str) -> None:
     how, made = emitter(name), rttrr.compile().program
     assert how.emit(made) == how.emit(made)

@@ -10,9 +10,9 @@ import pytest
 
 import rttrr_pin
 from rttrr_pin import Robot, RttrrError, Wrench
-from rttrr_pin.core.batch import BLOCK
+from rttrr_pin.core.dynamics import evaluate
+from rttrr_pin.core.scalars import FLOAT
 from rttrr_pin.errors import InputError, MissingJointError, NumberError, ShapeError, UnknownNameError
-from rttrr_pin.robot import KERNEL_FROM
 from support.inputs import BAD, JOINTS, PAYLOADS, ZERO, some
 from support.tolerances import ROUNDING, norm_error
 
@@ -25,9 +25,9 @@ def test_outputs_follow_the_batch_axes(rttrr: Robot, batch: tuple[int, ...]) -> 
         assert getattr(result, key).shape == (*batch, 6, 3)
 
 
-@pytest.mark.parametrize("rows", [1, 2, 7, BLOCK - 1, BLOCK, BLOCK + 1, KERNEL_FROM - 1])
+@pytest.mark.parametrize("rows", [1, 2, 7, 64, 65, 9000])
 def test_a_state_gives_the_same_bits_in_any_batch(rttrr: Robot, rows: int) -> None:
-    """Alone, in a block of any length, first or last; up to the size from which the kernel computes."""
+    """Alone, in a block of any length, first or last, on several threads."""
     q, v, a = some((rows,), seed=rows)
     payload = Wrench((1.0, 2.0, 3.0), (0.1, 0.2, 0.3), expressed_in="base")
     together = rttrr.inverse_dynamics(q, v, a, payload)
@@ -37,17 +37,16 @@ def test_a_state_gives_the_same_bits_in_any_batch(rttrr: Robot, rows: int) -> No
             np.testing.assert_array_equal(x, getattr(together, key)[k])
 
 
-@pytest.mark.parametrize("rows", [KERNEL_FROM, KERNEL_FROM + 1, 2 * KERNEL_FROM + 5])
-def test_large_batches_are_the_kernels(rttrr: Robot, rows: int) -> None:
-    """The same within rounding as the readable recursion, and the same bits in any large batch."""
-    q, v, a = some((rows,), seed=rows)
-    payload = Wrench((1.0, 2.0, 3.0), (0.1, 0.2, 0.3), expressed_in="base")
-    large = rttrr.inverse_dynamics(q, v, a, payload)
-    again = rttrr.inverse_dynamics(*(np.concatenate((x[3:], x)) for x in (q, v, a)), payload)[rows - 3 :]
-    small = rttrr.inverse_dynamics(q[:99], v[:99], a[:99], payload)
-    for key, x in large.items():
-        np.testing.assert_array_equal(x, getattr(again, key))
-        assert norm_error(x[:99], getattr(small, key)) <= ROUNDING
+def test_it_is_the_recursion_within_rounding(rttrr: Robot) -> None:
+    q, v, a = some((99,))
+    wrench = Wrench((1.0, 2.0, 3.0), (0.1, 0.2, 0.3), expressed_in="base")
+    load = rttrr.load_of(wrench)
+    reference = evaluate(rttrr.model, FLOAT, q, v, a, [load])
+    result = rttrr.inverse_dynamics(q, v, a, wrench)
+    assert norm_error(result.tau, np.stack(reference.tau, axis=-1)) <= ROUNDING
+    for key in ("F", "N", "f", "n"):
+        vectors = [np.stack([np.broadcast_to(x, 99) for x in vector], axis=-1) for vector in getattr(reference, key)]
+        assert norm_error(getattr(result, key), np.stack(vectors, axis=1)) <= ROUNDING
 
 
 def test_leading_axes_broadcast(rttrr: Robot) -> None:
@@ -107,10 +106,7 @@ def test_tau_is_the_component_along_the_axis(robot: Robot) -> None:
     for column, joint in enumerate(robot.model.moving):
         i = robot.model.joints.index(joint)
         whole = result.n[:, i] if joint.type.rotates else result.f[:, i]
-        np.testing.assert_array_equal(
-            result.tau[:, column],
-            whole[:, 0] * joint.axis[0] + whole[:, 1] * joint.axis[1] + whole[:, 2] * joint.axis[2],
-        )
+        assert norm_error(result.tau[:, column], whole @ joint.axis) <= ROUNDING
 
 
 def test_the_tool_hands_on_the_payload(rttrr: Robot) -> None:
@@ -164,6 +160,19 @@ def test_bad_payloads_are_errors(rttrr: Robot, case: str) -> None:
     payload, error, message = PAYLOADS[case]
     with pytest.raises(error, match=message):
         rttrr.inverse_dynamics(ZERO, ZERO, ZERO, payload)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "message"),
+    [
+        (((0, 0),), ShapeError, "payload force has 2 values"),
+        ((3.0,), ShapeError, "payload force is a single number"),
+        (((0, 0, 0), (0, np.nan, 0)), NumberError, r"payload moment\[1\] is nan"),
+    ],
+)
+def test_bad_wrenches_are_errors_at_once(arguments: Any, error: type[RttrrError], message: str) -> None:
+    with pytest.raises(error, match=message):
+        Wrench(*arguments)
 
 
 def test_payload_axes_are_link_or_base() -> None:

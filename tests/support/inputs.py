@@ -55,9 +55,6 @@ BAD: dict[str, tuple[Any, type[RttrrError], str]] = {
 PAYLOADS: dict[str, tuple[Any, type[RttrrError], str]] = {
     "unknown-link": (Wrench((0, 0, 0), link="link_7"), UnknownNameError, "no link is called 'link_7'"),
     "root": (Wrench((0, 0, 0), link="base"), UnknownNameError, "'base' is the root"),
-    "two-numbers": (Wrench((0, 0)), ShapeError, "payload force has 2 values"),
-    "number": (Wrench(3.0), ShapeError, "payload force is a single number"),
-    "nan": (Wrench((0, 0, 0), (0, np.nan, 0)), NumberError, r"payload moment\[1\] is nan"),
     "tuple": ((1, 2, 3), InputError, "payload is a int, expected a Wrench"),
     "integer": (3, InputError, "payload is a int, expected a Wrench"),
 }

@@ -8,9 +8,8 @@ import pytest
 import rttrr_pin
 from rttrr_pin import Robot, Wrench
 from rttrr_pin.errors import InputError
-from rttrr_pin.robot import KERNEL_FROM
 from rttrr_pin.validation import Sampler, compare_state, validate
-from rttrr_pin.validation.ours import COMPUTED, Ours
+from rttrr_pin.validation.ours import COMPUTED, KERNEL_FROM, Ours
 from rttrr_pin.validation.search import POPULATION, search
 from support.trees import random_tree
 

@@ -28,7 +28,7 @@ from rttrr_pin.core.payload import Load, Payloads, loads_of
 from rttrr_pin.core.wrench import Wrench
 from rttrr_pin.errors import InputError, UnknownNameError
 
-Result = TypeVar("Result", Array, dict[str, Array])
+Result = TypeVar("Result", bound=Array | dict[str, Array])
 """What a kernel returns: an array for a single output, a dict of them by name for several."""
 
 NO_NUMBERS: tuple[Array, ...] = ()
