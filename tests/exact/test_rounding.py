@@ -16,6 +16,7 @@ from rttrr_pin.core.scalars import UNIT_ROUNDOFF
 from rttrr_pin.exact import BOUNDED, Bounded, bounded_dynamics
 from rttrr_pin.validation import SAMPLINGS, Sampler
 from support.high_precision import exact_dynamics, mp_arithmetic, mp_rotation
+from support.recursion import recursion
 from support.serial_chains import random_chain
 from support.tolerances import ROUNDING
 from support.trees import random_tree
@@ -50,10 +51,10 @@ def check_bounds(robot: Robot, sampling: str, seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", [0, 1])
-def test_values_are_the_bits_of_inverse_dynamics(robot: Robot, seed: int) -> None:
+def test_values_are_the_bits_of_the_recursion(robot: Robot, seed: int) -> None:
     states = Sampler(robot.model, "mixed", seed).draw(0, 40)
     values, _ = bounded_dynamics(robot.model, states.q, states.v, states.a)
-    plain = robot.inverse_dynamics(states.q, states.v, states.a)
+    plain = recursion(robot, states.q, states.v, states.a)
     for key, x in values.items():
         np.testing.assert_array_equal(x, getattr(plain, key))
 
