@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.compile.cost import fused
 from rttrr_pin.compile.emit import emitter
 from rttrr_pin.compile.emit.llvm_vectors import Lines, polynomials
-from rttrr_pin.compile.expression import Graph, Op
+from rttrr_pin.compile.expression import LEAVES, Graph, Op
 from rttrr_pin.compile.program import Field, Program
+from rttrr_pin.compile.summation import order_sums
 
 Array = NDArray[np.float64]
 
@@ -48,7 +48,10 @@ def operations(program: Program) -> int:
     """Instructions that one state needs, with products fused into sums, sines and cosines by their polynomials."""
     lines = Lines(1)
     polynomials(lines, "%q")
-    return fused(program) + lines.count * program.operations.sincos
+    fused = order_sums(program, fused=True)
+    ops = [fused.graph.op[x] for x in fused.order]
+    arithmetic = [op for op in ops if op not in LEAVES and op not in (Op.SIN, Op.COS)]
+    return len(arithmetic) + lines.count * program.operations.sincos
 
 
 def peak(chains: int = 10, length: int = 400, states: int = 2048, repeats: int = 30) -> float:

@@ -22,7 +22,6 @@ import rttrr_pin
 from common import arguments, finish
 from puma560 import armstrong, general
 from rttrr_pin.compile.program import Program
-from rttrr_pin.compile.simplify import collect, simplify
 from rttrr_pin.compile.trace import trace
 from rttrr_pin.core.model import Model
 
@@ -39,14 +38,8 @@ ROBOTS = ("rttrr", "example:ur5_robot", "example:panda", "example:talos_reduced"
 
 
 def counts(model: Model) -> dict[str, dict[str, int]]:
-    """Operations as traced, with inertia lumped, with sums collected, and as compiled."""
-    regrouped = trace(model, ["tau"])
-    programs = {
-        "traced": trace(model, ["tau"], regrouped=False),
-        "lumped": regrouped,
-        "collected": collect(regrouped),
-        "compiled": simplify(regrouped),
-    }
+    """Operations as traced, and as compiled: with inertia regrouped."""
+    programs = {"traced": trace(model, ["tau"], regrouped=False), "compiled": trace(model, ["tau"])}
     return {name: _of(program) for name, program in programs.items()}
 
 
@@ -62,7 +55,7 @@ def _of(program: Program) -> dict[str, int]:
 
 def shown(figures: dict[str, dict[str, dict[str, int]]]) -> Table:
     """The counts as multiplications / additions."""
-    table = Table("robot", "traced", "lumped", "collected", "compiled", "angles", title="multiplications / additions")
+    table = Table("robot", "traced", "compiled", "angles", title="multiplications / additions")
     for robot, steps in figures.items():
         cells = [f"{step['multiplications']} / {step['additions']}" for step in steps.values()]
         table.add_row(robot, *cells, str(steps["compiled"]["sincos"]))
