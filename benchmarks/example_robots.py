@@ -30,7 +30,7 @@ def main() -> int:
         "files": len({entry.name for entry in entries}),
         "verdicts": dict(verdicts),
         "worst_eps": max(entry.eps for entry in entries),
-        "worst_share_of_gate": max(entry.share for entry in entries),
+        "worst_of_tolerance": max(entry.of_tolerance for entry in entries),
         "seconds": round(time.perf_counter() - start, 1),
         "entries": [{key: value for key, value in asdict(entry).items() if value != ""} for entry in entries],
     }

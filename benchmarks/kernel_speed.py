@@ -23,7 +23,8 @@ from common import arguments, finish
 from kernel_speed_limits import available_states, copy, operations, peak
 from kernel_speed_report import check, compare, plot, show
 from peers_run import ENVIRONMENTS, PEERS, Array, interpreter, requirements, run_peer
-from rttrr_pin.validation.states import Sampler, States
+from rttrr_pin.implementations import Batch
+from rttrr_pin.validation.states import Sampler
 
 sys.path.insert(0, str(PEERS))
 import pinocchio_parallel
@@ -115,7 +116,7 @@ def measure(name: str, peers: list[str], chosen: argparse.Namespace) -> list[dic
     return rows
 
 
-def write(file: Path, robot: rttrr_pin.Robot, states: States, count: int) -> None:
+def write(file: Path, robot: rttrr_pin.Robot, states: Batch, count: int) -> None:
     """STATES.npz with the first states."""
     q, v, a = (x[:count] for x in (states.q, states.v, states.a))
     np.savez(file, q=q, v=v, a=a, joints=list(robot.joint_names), gravity=robot.model.gravity)

@@ -57,7 +57,7 @@ def agreement() -> Lines:
             ["", *worst],
             [
                 ["worst difference, eps of the link's own norm", *(f"{x['worst_eps']:.0f}" for x in worst.values())],
-                ["worst error / tolerance", *(f"{x['worst_share_of_gate']:.2f}" for x in worst.values())],
+                ["worst error / tolerance", *(f"{x['worst_of_tolerance']:.2f}" for x in worst.values())],
             ],
         ),
     ]
@@ -120,7 +120,7 @@ def robots() -> Lines:
 
 
 def _worst(data: dict[str, Any]) -> tuple[str, str, str]:
-    return f"{data['worst_eps']:,.0f} eps", f"{data['worst_share_of_gate']:.2f}", f"{data['seconds']:.0f} s"
+    return f"{data['worst_eps']:,.0f} eps", f"{data['worst_of_tolerance']:.2f}", f"{data['seconds']:.0f} s"
 
 
 def audit() -> Lines:
@@ -166,8 +166,8 @@ def errors() -> Lines:
     rows = []
     for name, robot in data["robots"].items():
         eps = robot["errors_eps"]
-        for quantity, ours in eps["ours"].items():
-            nearer, farther = (100 * eps[f"{who}_nearer"][quantity] for who in ("ours", "pinocchio"))
+        for quantity, ours in eps["kernel"].items():
+            nearer, farther = (100 * eps[f"{who}_nearer"][quantity] for who in ("kernel", "pinocchio"))
             both = (_spread(figures) for figures in (ours, eps["pinocchio"][quantity]))
             rows.append((name, quantity, *both, f"{nearer:.0f} %; {farther:.0f} %"))
     return [

@@ -26,11 +26,9 @@ from rttrr_pin.errors import InputError
 from rttrr_pin.exact import Enclosures, enclose
 from rttrr_pin.exact.adjudication import nearest
 from rttrr_pin.exact.enclosures import STRAIGHT_LINE_FROM
-from rttrr_pin.implementations import Evaluation, make_oracle
+from rttrr_pin.implementations import Batch, Evaluation, make_implementation
 from rttrr_pin.validation import Sampler
 from rttrr_pin.validation.compare import Comparison
-from rttrr_pin.validation.ours import Ours
-from rttrr_pin.validation.states import States
 
 ROBOTS = {"rttrr": "RTTRR", "example:panda": "Panda with fingers", "example:talos_reduced": "Talos reduced"}
 
@@ -56,31 +54,29 @@ def main() -> None:
 
 def errors(robot: Robot, count: int) -> dict[str, Any]:
     """Figures of each program, by quantity; of a state the largest over all links or joints."""
-    drawn = Sampler(robot.model, payload=robot.link_names[-1]).draw(0, count)
+    drawn = Sampler(robot.model, payload=rttrr_pin.RandomPayload(robot.link_names[-1])).draw(0, count)
     arrays = (drawn.q, drawn.v, drawn.a, drawn.loads)
     enclosures = enclose(robot.model, *arrays, "read")
-    side = Ours(robot, count)
-    ours, bound = side(drawn)
-    theirs = make_oracle("pinocchio", robot.model).evaluate(*arrays)
     out: dict[str, Any] = {
-        "our_side": side.name,
         "bits": {str(bits): int((enclosures.bits == bits).sum()) for bits in set(enclosures.bits)},
     }
     largest: dict[str, dict[str, Array]] = {}
-    for program, computed in (("ours", ours), ("pinocchio", theirs.wrenches)):
+    for program in ("kernel", "pinocchio"):
+        computed = make_implementation(program, robot.model).evaluate(drawn)
         comparison = Comparison(robot.model)
-        gaps = comparison.gaps(computed, Evaluation(nearest(enclosures, computed), theirs.rounding), bound)
+        values = nearest(enclosures, computed.values)
+        truth = Evaluation(values, {key: np.zeros(x.shape[:2]) for key, x in values.items()}, computed.tau_joint)
+        differences = comparison.differences(drawn, computed, truth)
         by_quantity: dict[str, list[Array]] = {}
-        for row, gap in zip(comparison.rows, gaps, strict=True):
-            allowed = gap.own if program == "ours" else gap.allowance
-            if (gap.difference > allowed).any():
-                raise SystemExit(f"{program} is beyond its half of the gate in {row.quantity} at {row.at}")
-            by_quantity.setdefault(row.quantity, []).append(gap.relative)
+        for row, one in zip(comparison.rows, differences, strict=True):
+            if (one.error > one.of_subject).any():
+                raise SystemExit(f"{program} is beyond its allowance in {row.quantity} at {row.at}")
+            by_quantity.setdefault(row.quantity, []).append(one.relative)
         largest[program] = {quantity: np.max(columns, axis=0) for quantity, columns in by_quantity.items()}
         out[program] = {quantity: _figures(eps) for quantity, eps in largest[program].items()}
-    for name, nearer, farther in (("ours_nearer", "ours", "pinocchio"), ("pinocchio_nearer", "pinocchio", "ours")):
+    for nearer, farther in (("kernel", "pinocchio"), ("pinocchio", "kernel")):
         pairs = zip(largest[nearer].items(), largest[farther].values(), strict=True)
-        out[name] = {quantity: round(float((one < other).mean()), 3) for (quantity, one), other in pairs}
+        out[f"{nearer}_nearer"] = {quantity: round(float((one < other).mean()), 3) for (quantity, one), other in pairs}
     return out
 
 
@@ -112,7 +108,7 @@ def cost(robot: Robot) -> dict[str, float]:
     }
 
 
-def _certified(robot: Robot, drawn: States) -> Enclosures:
+def _certified(robot: Robot, drawn: Batch) -> Enclosures:
     return enclose(robot.model, drawn.q, drawn.v, drawn.a)
 
 

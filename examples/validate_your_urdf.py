@@ -5,15 +5,16 @@ from __future__ import annotations
 import sys
 
 import rttrr_pin
-from rttrr_pin.validation import compare_state, validate
 
 robot = rttrr_pin.load(sys.argv[1] if len(sys.argv) > 1 else "rttrr")
-outcome = validate(robot, states=2000, payload="random")
-print("agree" if outcome.agrees else "disagree", "on", outcome.n_states, "states")
+payload = rttrr_pin.RandomPayload()
+outcome = rttrr_pin.validate(robot, subject="kernel", reference="pinocchio", n_states=2000, payload=payload)
+print(outcome.summary())
 
 worst = outcome.worst
 if worst is not None:
-    print(f"closest to the gate: {worst.quantity} at {worst.at}, {worst.share.value:.0%} of what rounding can explain")
-    report = compare_state(robot, worst.share.state, payload="random")
-    print("ours  ", report.ours.tau[0])
-    print("theirs", report.theirs.tau[0])
+    state = worst.of_tolerance.state
+    print(f"worst state {state}: {worst.quantity} at {worst.at}, error / tolerance {worst.of_tolerance.value:.2f}")
+    report = rttrr_pin.compare_state(robot, state, payload=payload)
+    print("kernel   ", report.result.values["tau"][0])
+    print("pinocchio", report.comparisons[0].result.values["tau"][0])

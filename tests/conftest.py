@@ -9,9 +9,8 @@ from pathlib import Path
 import pytest
 
 import rttrr_pin
-from rttrr_pin import Robot, implementations
+from rttrr_pin import Robot
 from rttrr_pin.compile import cache
-from support.fakes import Liar
 from support.serial_chains import EXAMPLES
 
 
@@ -39,10 +38,3 @@ def rttrr() -> Robot:
 def robot(request: pytest.FixtureRequest) -> Robot:
     """The bundled arm and chains made to be awkward."""
     return rttrr_pin.load(EXAMPLES.get(request.param, request.param))
-
-
-@pytest.fixture
-def liar(monkeypatch: pytest.MonkeyPatch) -> type[Liar]:
-    """An implementation called "liar", whose `spoil` the test sets."""
-    monkeypatch.setitem(implementations.ORACLES, "liar", "support.fakes:Liar")
-    return Liar

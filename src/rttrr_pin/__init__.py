@@ -1,4 +1,4 @@
-"""Validates rigid-body dynamics: a hand-written Newton-Euler recursion against Pinocchio, link by link.
+"""Tells whether inverse dynamics are right, and if not, which link and which quantity is wrong.
 
 >>> import rttrr_pin
 >>> robot = rttrr_pin.load("rttrr")
@@ -7,12 +7,90 @@
 
 from __future__ import annotations
 
-from rttrr_pin.core.joint import JointEffects
-from rttrr_pin.core.wrench import LinkWrenches, Wrench
-from rttrr_pin.errors import RttrrError
-from rttrr_pin.loading import load, load_all
-from rttrr_pin.robot import Robot
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rttrr_pin.auditing import audit, read_publication
+    from rttrr_pin.compile import Kernel
+    from rttrr_pin.core.joint import Joint, JointEffects, Limits, Mimic
+    from rttrr_pin.core.model import Link, Model
+    from rttrr_pin.core.payload import RandomPayload
+    from rttrr_pin.core.wrench import LinkWrenches, Wrench
+    from rttrr_pin.derivation import derive
+    from rttrr_pin.errors import InputError, RttrrError
+    from rttrr_pin.exact import Enclosures
+    from rttrr_pin.implementations import Batch, Evaluation, Implementation
+    from rttrr_pin.inspection import inspect
+    from rttrr_pin.laws import check_laws
+    from rttrr_pin.loading import load, load_all
+    from rttrr_pin.robot import Robot
+    from rttrr_pin.validation import compare_state, validate, validate_many
+    from rttrr_pin.validation.search import search_worst_state
 
 __version__ = "0.1.0"
 
-__all__ = ["JointEffects", "LinkWrenches", "Robot", "RttrrError", "Wrench", "__version__", "load", "load_all"]
+_PLACES = {
+    "auditing": ("audit", "read_publication"),
+    "compile": ("Kernel",),
+    "core.joint": ("Joint", "JointEffects", "Limits", "Mimic"),
+    "core.model": ("Link", "Model"),
+    "core.payload": ("RandomPayload",),
+    "core.wrench": ("LinkWrenches", "Wrench"),
+    "derivation": ("derive",),
+    "errors": ("InputError", "RttrrError"),
+    "exact": ("Enclosures",),
+    "implementations": ("Batch", "Evaluation", "Implementation"),
+    "inspection": ("inspect",),
+    "laws": ("check_laws",),
+    "loading": ("load", "load_all"),
+    "robot": ("Robot",),
+    "validation": ("compare_state", "validate", "validate_many"),
+    "validation.search": ("search_worst_state",),
+}
+"""Where each public name is defined; a module is loaded when a name of it is used."""
+
+_MODULES = {name: module for module, names in _PLACES.items() for name in names}
+
+__all__ = [
+    "Batch",
+    "Enclosures",
+    "Evaluation",
+    "Implementation",
+    "InputError",
+    "Joint",
+    "JointEffects",
+    "Kernel",
+    "Limits",
+    "Link",
+    "LinkWrenches",
+    "Mimic",
+    "Model",
+    "RandomPayload",
+    "Robot",
+    "RttrrError",
+    "Wrench",
+    "__version__",
+    "audit",
+    "check_laws",
+    "compare_state",
+    "derive",
+    "inspect",
+    "load",
+    "load_all",
+    "read_publication",
+    "search_worst_state",
+    "validate",
+    "validate_many",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = globals()[name] = getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

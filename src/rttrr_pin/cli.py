@@ -22,6 +22,8 @@ UsageError: Any = typer.BadParameter.__base__
 
 COMMANDS = {
     "validate": "rttrr_pin.validation.command:validate",
+    "state": "rttrr_pin.validation.command:state",
+    "search": "rttrr_pin.validation.command_search:search",
     "audit": "rttrr_pin.auditing.command:audit",
     "derive": "rttrr_pin.derivation.command:derive",
     "inspect": "rttrr_pin.inspection.command:inspect",

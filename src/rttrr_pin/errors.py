@@ -117,11 +117,11 @@ class EquationError(RttrrError):
         super().__init__(f"{source}: {place + ': ' if place else ''}{message}")
 
 
-class OracleError(RttrrError):
+class ImplementationError(RttrrError):
     """A library that serves as an oracle is missing, or cannot take this robot."""
 
 
-class ModelMismatchError(OracleError):
+class ModelMismatchError(ImplementationError):
     """The model that an oracle built from the file is not what the file says.
 
     Attributes:

@@ -23,8 +23,8 @@ from rttrr_pin.compile.register_allocation import arranged
 from rttrr_pin.compile.trace import trace
 from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.errors import InputError, NumberError
+from rttrr_pin.implementations import Batch
 from rttrr_pin.validation import Sampler
-from rttrr_pin.validation.states import States
 from support.serial_chains import random_chain
 from support.slow import slow_after
 from support.tolerances import ROUNDING, norm_error
@@ -51,7 +51,7 @@ def chain(joints: int) -> Robot:
     return rttrr_pin.load(random_chain(joints, ("revolute",) * joints))
 
 
-def states(robot: Robot, seed: int, count: int = 37) -> States:
+def states(robot: Robot, seed: int, count: int = 37) -> Batch:
     return Sampler(robot.model, "mixed", seed).draw(0, count)
 
 

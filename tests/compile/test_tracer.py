@@ -23,8 +23,8 @@ from rttrr_pin.core.dynamics import bodies, dynamics
 from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import FLOAT
+from rttrr_pin.implementations import Batch
 from rttrr_pin.validation import Sampler
-from rttrr_pin.validation.states import States
 from support.serial_chains import inertial, joint, random_chain
 from support.slow import slow_after
 from support.tolerances import ROUNDING, norm_error
@@ -203,7 +203,7 @@ def test_functions_of_constants_are_constants() -> None:
 # Moving inertia between links
 
 
-def lumped_forces(model: Model, drawn: States) -> np.ndarray:
+def lumped_forces(model: Model, drawn: Batch) -> np.ndarray:
     """The driving forces, (N, nv), by the readable recursion on links whose inertia was moved."""
     tree, links = regroup(model, bodies(model, FLOAT))
     assert [link.type for link in links] == [joint.type for joint in model.joints]

@@ -21,10 +21,10 @@ from rttrr_pin.core.rotations import SinCos, rotation
 from rttrr_pin.core.scalars import FLOAT
 from rttrr_pin.core.tangent import TIME, over_duals, tangent
 from rttrr_pin.exact.rounding import bounded_dynamics
-from rttrr_pin.implementations import make_oracle
 from rttrr_pin.laws import check_laws
 from rttrr_pin.validation import Sampler
 from support.bodies import random_joint, random_link
+from support.implementations import evaluated
 
 
 @dataclass(frozen=True)
@@ -181,7 +181,7 @@ def test_every_program_takes_the_type(joint_type: JointType) -> None:
     q, v, a = state.q, state.v, state.a
     expected, bounds = bounded_dynamics(robot.model, q, v, a)
     scale = np.abs(expected.tau).max()
-    for tau in (robot.compile("tau")(q, v, a), make_oracle("lagrange", robot.model).evaluate(q, v, a).wrenches.tau):
+    for tau in (robot.compile("tau")(q, v, a), evaluated("lagrange", robot.model, q, v, a).values["tau"]):
         np.testing.assert_allclose(tau, expected.tau, rtol=0.0, atol=1e-11 * scale)
     assert 0.0 < bounds.tau.max() < 1e-11 * scale
     assert [row.law.id for row in check_laws(robot, 20).rows if not row.holds] == []

@@ -12,8 +12,8 @@ import rttrr_pin
 from rttrr_pin import JointEffects, Robot, RttrrError
 from rttrr_pin.core.joints import JOINT_TYPES
 from rttrr_pin.errors import InputError, NumberError, ShapeError, UnknownNameError, UrdfError
-from rttrr_pin.implementations import make_oracle
 from rttrr_pin.validation import Sampler, validate
+from support.implementations import evaluated
 from support.serial_chains import inertial, joint, random_chain
 from support.tolerances import ROUNDING, norm_error
 from support.trees import TREE_TYPES, random_tree
@@ -26,8 +26,8 @@ SEEDS = range(12)
 def test_random_trees_agree_with_pinocchio(seed: int, base: Any) -> None:
     """All joint types, branches, followers, massless frames, friction; 1,000 more in benchmarks/random_trees.py."""
     robot = rttrr_pin.load(random_tree(seed, 1 + 2 * seed), base=base, friction=True)
-    result = validate(robot, 16, seed, "mixed")
-    assert result.agrees, result.worst
+    result = validate(robot, n_states=16, seed=seed, sampling="mixed")
+    assert result.passed, result.worst
 
 
 @pytest.mark.parametrize("kind", TREE_TYPES)
@@ -35,7 +35,7 @@ def test_each_joint_type_alone_and_below_itself(kind: str) -> None:
     for joints in (1, 3):
         robot = rttrr_pin.load(random_tree(joints, joints, (kind,), mimics=False))
         assert {joint.type for joint in robot.model.joints} == {JOINT_TYPES[kind]}
-        assert validate(robot, 40, sampling="mixed").agrees
+        assert validate(robot, n_states=40, sampling="mixed").passed
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -67,7 +67,7 @@ def test_a_follower_moves_as_it_says_and_its_force_counts(seed: int) -> None:
     assert norm_error(ours.n, theirs.n) <= ROUNDING
     expected = np.stack([theirs.tau[:, 1], theirs.tau[:, 2] - 1.5 * theirs.tau[:, 0]], axis=1)
     assert norm_error(ours.tau, expected) <= ROUNDING
-    assert validate(bound, 200, seed).agrees
+    assert validate(bound, n_states=200, seed=seed).passed
 
 
 def test_pinocchio_itself_agrees_where_it_can_follow() -> None:
@@ -192,7 +192,7 @@ def test_drives_add_to_tau_and_not_to_the_bearings(rttrr: Robot) -> None:
     assert norm_error(with_.tau - with_.tau_joint, without.tau) <= ROUNDING
     np.testing.assert_array_equal(with_.n, without.n)
     assert not without.tau_joint.any()
-    assert validate(robot, 300).agrees
+    assert validate(robot, n_states=300).passed
 
 
 def test_friction_of_the_file_is_an_option() -> None:
@@ -210,8 +210,8 @@ def test_armature_is_in_pinocchios_torque_and_not_in_its_force(rttrr: Robot) -> 
     """tau - S^T f = armature * a."""
     robot = rttrr.with_joint_effects({"joint_1": JointEffects(armature=0.7)})
     drawn = Sampler(rttrr.model).draw(0, 10)
-    theirs = make_oracle("pinocchio", robot.model).evaluate(drawn.q, drawn.v, drawn.a).wrenches
-    assert norm_error(theirs.tau[:, 0], theirs.n[:, 0, 2] + 0.7 * drawn.a[:, 0]) <= ROUNDING
+    theirs = evaluated("pinocchio", robot.model, drawn.q, drawn.v, drawn.a).values
+    assert norm_error(theirs["tau"][:, 0], theirs["n"][:, 0, 2] + 0.7 * drawn.a[:, 0]) <= ROUNDING
 
 
 @pytest.mark.parametrize(
@@ -266,4 +266,4 @@ def test_a_sensor_beside_a_branch_carries_its_own_weight_alone() -> None:
     mass = robot.model.links[robot.model.link_index("sensor")].mass
     result = robot.inverse_dynamics([0.3, 0.4], [0, 0], [0, 0])
     assert abs(np.linalg.norm(result.at("sensor")["f"]) - 9.81 * mass) <= ROUNDING * mass
-    assert validate(robot, 50).agrees
+    assert validate(robot, n_states=50).passed

@@ -9,11 +9,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rttrr_pin
-from rttrr_pin import LinkWrenches, Robot, Wrench
+from rttrr_pin import LinkWrenches, RandomPayload, Robot, Wrench
 from rttrr_pin.core.dynamics import evaluate
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.scalars import FLOAT
-from rttrr_pin.implementations import make_oracle
+from rttrr_pin.implementations import Batch, make_implementation
 from rttrr_pin.validation import EPS as PACKAGE_EPS
 from rttrr_pin.validation import SAMPLINGS, Sampler, validate
 from support.high_precision import mp_arithmetic
@@ -40,19 +40,19 @@ def states(robot: Robot, seed: int, count: int = 50) -> tuple[np.ndarray, np.nda
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("sampling", SAMPLINGS)
 def test_agrees_with_pinocchio_on_every_family_of_states(robot: Robot, sampling: str, seed: int) -> None:
-    assert validate(robot, 64, seed, sampling).agrees
+    assert validate(robot, "recursion", n_states=64, seed=seed, sampling=sampling).passed
 
 
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("expressed_in", ["link", "base"])
 def test_agrees_with_pinocchio_with_a_payload_at_every_link(robot: Robot, expressed_in: str, seed: int) -> None:
     rng = np.random.default_rng(seed)
-    oracle = make_oracle("pinocchio", robot.model)
+    oracle = make_implementation("pinocchio", robot.model)
     q, v, a = states(robot, seed)
     for i, link in enumerate(robot.link_names):
         f, n = rng.uniform(-20, 20, (2, len(q), 3))
         ours = robot.inverse_dynamics(q, v, a, Wrench(f, n, link, expressed_in))
-        theirs = oracle.evaluate(q, v, a, [Load(i, f, n, expressed_in == "base")]).wrenches
+        theirs = oracle.evaluate(Batch(robot.model, q, v, a, (Load(i, f, n, expressed_in == "base"),))).values
         assert_same(ours, theirs)
 
 
@@ -72,15 +72,15 @@ def test_several_payloads_add_up(robot: Robot) -> None:
 def test_agrees_with_pinocchio_on_random_chains(seed: int, types: list[str]) -> None:
     """Any axes, placements, tensors in turned axes, fixed links anywhere."""
     robot = rttrr_pin.load(random_chain(seed, tuple(types)))
-    result = validate(robot, 20, seed, "mixed", payload="random")
-    assert result.agrees, result.worst
+    result = validate(robot, "recursion", n_states=20, seed=seed, sampling="mixed", payload=RandomPayload())
+    assert result.passed, result.worst
 
 
 def test_gravity_is_the_field_that_was_passed(rttrr: Robot) -> None:
     """Also where it points sideways, and where there is none."""
     for gravity in ((0, 0, 0), (1.0, -2.0, 3.0)):
         other = rttrr_pin.load("rttrr", gravity=gravity)
-        assert validate(other, 50).agrees
+        assert validate(other, "recursion", n_states=50).passed
     resting = rttrr_pin.load("rttrr", gravity=(0, 0, 0)).inverse_dynamics(np.ones(5), np.zeros(5), np.zeros(5))
     assert not any(x.any() for _, x in resting.items())
 

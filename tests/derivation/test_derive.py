@@ -38,9 +38,9 @@ from rttrr_pin.derivation.writers import WRITERS, mathematics
 from rttrr_pin.derivation.writers.printing import Notation
 from rttrr_pin.derivation.writers.printing import lines as lines_of
 from rttrr_pin.derivation.writers.printing import text as text_of
-from rttrr_pin.implementations import make_oracle
 from rttrr_pin.validation import Sampler
 from support import closed_latex
+from support.implementations import evaluated
 from support.pdflatex import compiled
 from support.serial_chains import EXAMPLES, random_chain
 from support.slow import slow_but
@@ -119,7 +119,7 @@ def pinocchios(name: str) -> dict[str, np.ndarray]:
     model = robot(name).model
     at, payload = drawn(name)
     load = Load(len(model.links) - 1, payload[:, :3], payload[:, 3:])
-    wrenches = make_oracle("pinocchio", model).evaluate(at.q, at.v, at.a, [load]).wrenches
+    wrenches = evaluated("pinocchio", model, at.q, at.v, at.a, [load]).values
     found = {key: getattr(wrenches, key) for key in ("tau", *OF_LINKS)}
     still = Robot(model.without_joint_effects())
     found["M"], found["g"] = robot(name).mass_matrix(at.q), still.gravity_torque(at.q)

@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rttrr_pin
-from rttrr_pin import Robot, Wrench
+from rttrr_pin import RandomPayload, Robot, Wrench
 from rttrr_pin.core.dynamics import evaluate
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.payload import Load
@@ -26,8 +26,8 @@ from rttrr_pin.exact import Enclosures, bounded_dynamics, enclose
 from rttrr_pin.exact.enclosures import PRECISIONS, STRAIGHT_LINE_FROM, enclosing_doubles
 from rttrr_pin.exact.intervals import interval, precision
 from rttrr_pin.exact.parameters import exact_parameters
+from rttrr_pin.implementations import Batch
 from rttrr_pin.validation import Sampler
-from rttrr_pin.validation.states import States
 from support.high_precision import exact_dynamics, mp_rotation
 from support.serial_chains import EXAMPLES, random_chain
 from support.tolerances import SIXTY_DIGITS
@@ -37,7 +37,7 @@ ROWS = (4, STRAIGHT_LINE_FROM)
 """States for which the recursion runs on balls as it stands, and for which its operations are recorded first."""
 
 
-def certified(robot: Robot, states: States, parameters: Any = "doubles") -> Enclosures:
+def certified(robot: Robot, states: Batch, parameters: Any = "doubles") -> Enclosures:
     return enclose(robot.model, states.q, states.v, states.a, states.loads, parameters)
 
 
@@ -100,7 +100,7 @@ def test_an_enclosure_is_one_double_or_two_neighbours(name: str) -> None:
 
 
 def test_recorded_or_not_the_enclosures_are_the_same(rttrr: Robot) -> None:
-    states = Sampler(rttrr.model, payload="tool").draw(0, STRAIGHT_LINE_FROM)
+    states = Sampler(rttrr.model, payload=RandomPayload("tool")).draw(0, STRAIGHT_LINE_FROM)
     many = certified(rttrr, states)
     for k in range(STRAIGHT_LINE_FROM):
         one = slice(k, k + 1)

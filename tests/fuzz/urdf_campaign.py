@@ -106,18 +106,18 @@ def refusal(error: Exception) -> str:
 
 def ask(model: Any, stage: Any, chance: float) -> tuple[str, str]:
     """Pinocchio's model of the same text against ours: what came of it, and what is wrong with that."""
-    from rttrr_pin.errors import ModelMismatchError, OracleError
-    from rttrr_pin.implementations import make_oracle
+    from rttrr_pin.errors import ImplementationError, ModelMismatchError
+    from rttrr_pin.implementations import make_implementation
 
     if chance > PINOCCHIO_SHARE:
         return "", ""
     stage.value = PINOCCHIO
     try:
-        make_oracle("pinocchio", model)
+        make_implementation("pinocchio", model)
     except ModelMismatchError as error:
         what = re.sub("(link|joint) '.*?'", r"\1", error.differences[0]).split(":")[0]
         return f", Pinocchio's model differs: {what}", ""
-    except OracleError:
+    except ImplementationError:
         return ", Pinocchio refuses", ""
     except Exception as error:
         return ", the oracle crashed", f"the oracle crashed: {type(error).__name__}: {error}"

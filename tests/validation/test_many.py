@@ -26,21 +26,21 @@ def folder(tmp_path: Path) -> Path:
 def test_every_robot_has_a_row_for_each_base(folder: Path) -> None:
     (folder / "broken.urdf").write_text(BROKEN)
     sources = {path.stem: path for path in sorted(folder.glob("*.urdf"))}
-    entries = validate_many(sources, Task(states=30))
+    entries = validate_many(sources, Task(n_states=30))
     assert [(entry.name, entry.base) for entry in entries] == [
         (name, base) for name in sources for base in ("fixed", "floating")
     ]
     assert [entry.verdict for entry in entries] == ["agree"] * 2 + ["unusable"] * 2 + ["agree"] * 2
     assert all("'1,5' is not a decimal number" in entry.defect for entry in entries if entry.name == "broken")
-    assert all(entry.share > 0 and entry.worst for entry in entries if entry.name != "broken")
+    assert all(entry.of_tolerance > 0 and entry.worst for entry in entries if entry.name != "broken")
 
 
 def test_the_outcome_does_not_depend_on_the_workers(folder: Path) -> None:
     sources = {path.stem: path for path in sorted(folder.glob("*.urdf"))}
     outcomes = [
         [
-            (entry.name, entry.base, entry.eps, entry.share, entry.worst)
-            for entry in validate_many(sources, Task(states=40), workers=workers)
+            (entry.name, entry.base, entry.eps, entry.of_tolerance, entry.worst)
+            for entry in validate_many(sources, Task(n_states=40), workers=workers)
         ]
         for workers in (1, 2)
     ]
@@ -50,9 +50,9 @@ def test_the_outcome_does_not_depend_on_the_workers(folder: Path) -> None:
 @pytest.mark.parametrize(
     ("task", "error", "message"),
     [
-        (Task(states=0), InputError, "states is 0"),
-        (Task(sampling="gauss"), UnknownNameError, "no family"),
-        (Task(oracle="bullet"), UnknownNameError, "no oracle"),
+        (Task(n_states=0), InputError, "n_states is 0"),
+        (Task(sampling="gauss"), UnknownNameError, "no sampling"),
+        (Task(reference="bullet"), UnknownNameError, "no implementation"),
     ],
     ids=["states", "family", "oracle"],
 )
@@ -75,7 +75,6 @@ def test_a_folder_on_the_command_line(folder: Path, capsys: pytest.CaptureFixtur
 @pytest.mark.parametrize(
     "words",
     [
-        ["--state", "3"],
         ["--payload", "random"],
         ["--gravity", "0,0,0"],
         ["--friction"],

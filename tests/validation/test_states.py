@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 import rttrr_pin
-from rttrr_pin import Robot
+from rttrr_pin import RandomPayload, Robot
 from rttrr_pin.errors import InputError, UnknownNameError
 from rttrr_pin.validation import SAMPLINGS, Sampler
 from support.serial_chains import EXAMPLES
@@ -21,7 +21,7 @@ from support.serial_chains import EXAMPLES
 def test_state_k_is_the_same_however_the_work_is_cut(
     rttrr: Robot, sampling: str, first: int, count: int, at: int
 ) -> None:
-    sampler = Sampler(rttrr.model, sampling, 7, "tool")
+    sampler = Sampler(rttrr.model, sampling, 7, RandomPayload("tool"))
     k = at % count
     together, alone = sampler.draw(first, count), sampler.draw(first + k, 1)
     for name in "qva":
@@ -31,7 +31,7 @@ def test_state_k_is_the_same_however_the_work_is_cut(
 
 
 def test_a_payload_does_not_change_the_states(rttrr: Robot) -> None:
-    with_, without = Sampler(rttrr.model, payload="tool").draw(0, 9), Sampler(rttrr.model).draw(0, 9)
+    with_, without = Sampler(rttrr.model, payload=RandomPayload("tool")).draw(0, 9), Sampler(rttrr.model).draw(0, 9)
     np.testing.assert_array_equal(with_.q, without.q)
     np.testing.assert_array_equal(with_.a, without.a)
 

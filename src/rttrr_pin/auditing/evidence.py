@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -13,6 +14,7 @@ from flint import arb
 
 from rttrr_pin.auditing.normalise import add_sums
 from rttrr_pin.core.algebra import Matrix, Scalar, Vector
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dynamics import dynamics
 from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.newton_euler import Payload
@@ -22,7 +24,7 @@ from rttrr_pin.derivation.ring import evaluate
 from rttrr_pin.derivation.symbolic_robot import SymbolicRobot
 from rttrr_pin.derivation.symbols import Expression, Role
 from rttrr_pin.exact.intervals import INTERVAL, interval, precision
-from rttrr_pin.implementations import make_oracle
+from rttrr_pin.implementations import Batch, make_implementation
 
 BITS = 256
 """Precision of interval arithmetic."""
@@ -85,10 +87,10 @@ class Witness:
         """Pinocchio's value of a component, such as F5z."""
         quantity, place, axis = _parsed(name)
         if quantity == "tau":
-            return float(self._wrenches.tau[0, place])
+            return float(self._computed["tau"][0, place])
         if quantity == "vC":
-            return float(self._wrenches.F[0, place, axis]) / self.robot.model.links[place].mass
-        return float(getattr(self._wrenches, quantity)[0, place, axis])
+            return float(self._computed["F"][0, place, axis]) / self.robot.model.links[place].mass
+        return float(self._computed[quantity][0, place, axis])
 
     def recursion(self, name: str) -> arb:
         """The enclosure of a component by the recursion."""
@@ -133,15 +135,16 @@ class Witness:
         return values
 
     @cached_property
-    def _wrenches(self) -> Any:
+    def _computed(self) -> Mapping[str, Array]:
         loads: list[Load] = []
         for payload in self.robot.payloads:
             f, n = (
                 np.array([self.number(self.robot.ring.terms(x)) for x in vector]) for vector in (payload.f, payload.n)
             )
             loads.append(Load(payload.link, f, n))
-        oracle = make_oracle("pinocchio", self.robot.model)
-        return oracle.evaluate(self.q[None], self.v[None], self.a[None], loads).wrenches
+        model = self.robot.model
+        batch = Batch(model, self.q[None], self.v[None], self.a[None], tuple(loads))
+        return make_implementation("pinocchio", model).evaluate(batch).values
 
     @cached_property
     def _masses(self) -> list[arb]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rttrr_pin.exact.adjudication import Adjudication, Assessment, Deviation, format_eps, verdict_of
+from rttrr_pin.exact.adjudication import Adjudication, Assessment, Deviation
 from rttrr_pin.exact.enclosures import Enclosure, Enclosures, enclose
 from rttrr_pin.exact.rounding import BOUNDED, Bounded, bounded_dynamics
 
@@ -16,6 +16,4 @@ __all__ = [
     "Enclosures",
     "bounded_dynamics",
     "enclose",
-    "format_eps",
-    "verdict_of",
 ]

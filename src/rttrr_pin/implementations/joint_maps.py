@@ -18,7 +18,7 @@ from rttrr_pin.core.model import Model
 
 
 @dataclass(frozen=True, slots=True)
-class OracleJoint:
+class LibraryJoint:
     """A moving joint of ours, where an oracle has it.
 
     Attributes:
@@ -65,7 +65,7 @@ def friction(effects: JointEffects, v: Array) -> Array:
     return effects.damping * v + effects.friction * np.sign(v)
 
 
-def reduce_forces(joints: Sequence[OracleJoint], forces: Array) -> Array:
+def reduce_forces(joints: Sequence[LibraryJoint], forces: Array) -> Array:
     """Forces of all joints as forces of those that follow no other: a follower adds its multiplier times its own."""
     nv = max((joint.own_v.stop for joint in joints), default=0)
     out = np.zeros((len(forces), nv))

@@ -1,4 +1,4 @@
-"""Lagrange's equations as the oracle: the driving forces from derivatives of T and V, by dual numbers.
+"""Lagrange's equations: the driving forces from derivatives of T and V, by dual numbers.
 
 For rate j, with p_j = dT/dv_j the momentum that belongs to it and d_j the derivative by the configuration in the
 direction in which rate j takes it (the rates held):
@@ -27,27 +27,23 @@ from collections.abc import Sequence
 from importlib import metadata
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from rttrr_pin.core.algebra import Scalar, Vector
-from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dual import Dual, part_of, value_of
 from rttrr_pin.core.dynamics import bodies, joint_states
 from rttrr_pin.core.energy import drive_power, gyroscopic, kinetic_energy, moving_links, payload_power, potential_energy
 from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
-from rttrr_pin.core.payload import Load, payloads_of
+from rttrr_pin.core.payload import payloads_of
 from rttrr_pin.core.scalars import Arithmetic, columns
 from rttrr_pin.core.tangent import TIME, in_time, over_duals, tangent
-from rttrr_pin.core.wrench import LinkWrenches
 from rttrr_pin.exact.rounding import BOUNDED, Bounded, coordinate_scalars, values_and_bounds
-from rttrr_pin.implementations import Evaluation
+from rttrr_pin.implementations.protocol import Batch, Evaluation
 
 if TYPE_CHECKING:
     from rttrr_pin.core.newton_euler import Payload
 
 
-class LagrangeOracle:
+class Lagrange:
     """Lagrange's equations on our own model, run on (value, bound) scalars: its rounding comes with it."""
 
     name = "lagrange"
@@ -57,23 +53,13 @@ class LagrangeOracle:
     def __init__(self, model: Model) -> None:
         self.model = model
 
-    def evaluate(self, q: Array, v: Array, a: Array, loads: Sequence[Load] = ()) -> Evaluation:
-        """The driving forces of a batch, and a bound on their rounding.
-
-        Args:
-            q: coordinates, (N, nq) [rad or m].
-            v: rates, (N, nv).
-            a: accelerations, (N, nv).
-            loads: payloads.
-        """
-        v_, a_ = ([Bounded(column, 0.0) for column in columns(x)] for x in (v, a))
-        payloads = payloads_of(loads, BOUNDED)
-        tau, tau_joint = lagrange(self.model, BOUNDED, coordinate_scalars(self.model, q), v_, a_, payloads)
-        values, bounds = values_and_bounds(tau, len(q))
-        none = np.empty((len(q), 0, 3))
-        own = values_and_bounds(tau_joint, len(q))[0]
-        wrenches = LinkWrenches(values, none, none, none, none, own, (), self.model.v_names)
-        return Evaluation(wrenches, {"tau": bounds})
+    def evaluate(self, batch: Batch) -> Evaluation:
+        """The driving forces of a batch, and a bound on their rounding."""
+        v, a = ([Bounded(column, 0.0) for column in columns(x)] for x in (batch.v, batch.a))
+        payloads = payloads_of(batch.loads, BOUNDED)
+        q = coordinate_scalars(self.model, batch.q)
+        tau, tau_joint = (values_and_bounds(x, len(batch)) for x in lagrange(self.model, BOUNDED, q, v, a, payloads))
+        return Evaluation({"tau": tau[0]}, {"tau": tau[1]}, tau_joint[0])
 
 
 def lagrange(

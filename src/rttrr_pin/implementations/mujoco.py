@@ -34,14 +34,15 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joints import FLOATING, PLANAR, JointType
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
-from rttrr_pin.core.wrench import QUANTITIES, LinkWrenches
-from rttrr_pin.implementations import Evaluation
-from rttrr_pin.implementations.joint_maps import OracleJoint, friction, reduce_forces
+from rttrr_pin.core.wrench import QUANTITIES
+from rttrr_pin.implementations.allowance import of_library
+from rttrr_pin.implementations.joint_maps import LibraryJoint, friction, reduce_forces
 from rttrr_pin.implementations.mujoco_model import PREFIX, build, mujoco_joints, rotation_of
 from rttrr_pin.implementations.mujoco_rounding import rounding
+from rttrr_pin.implementations.protocol import Batch, Evaluation
 
 
-class MujocoOracle:
+class Mujoco:
     """MuJoCo's recursive Newton-Euler on the model that MuJoCo read from the same text."""
 
     name = "mujoco"
@@ -52,7 +53,7 @@ class MujocoOracle:
         """Build MuJoCo's model, and hold it against what the file says.
 
         Raises:
-            OracleError: the model has no URDF text, or MuJoCo refuses it.
+            ImplementationError: the model has no URDF text, or MuJoCo refuses it.
             ModelMismatchError: MuJoCo read something else.
         """
         self.model = model
@@ -61,22 +62,16 @@ class MujocoOracle:
         self.bodies = [self.compiled.body(PREFIX + name).id for name in model.link_names]
         self.data = mujoco.MjData(self.compiled)
 
-    def evaluate(self, q: Array, v: Array, a: Array, loads: Sequence[Load] = ()) -> Evaluation:
-        """tau, F, N, f, n of a batch by MuJoCo, in the frames and signs of `Robot.inverse_dynamics`.
-
-        Args:
-            q: coordinates, (N, nq) [rad or m].
-            v: rates, (N, nv).
-            a: accelerations, (N, nv).
-            loads: payloads.
-        """
+    def evaluate(self, batch: Batch) -> Evaluation:
+        """tau, F, N, f, n by MuJoCo."""
+        q, v, a, loads = batch.q, batch.v, batch.a, batch.loads
         motion = Motion.of(self.joints, self.compiled, q, v, a)
         record = self._run(motion, loads)
         tau, own = self._driving_forces(motion, record.tau, q, v, a)
         F, N = self._net(record)
         f, n = self._across_joints(record)
-        wrenches = LinkWrenches(tau, F, N, f, n, own, self.model.link_names, self.model.v_names)
-        return Evaluation(wrenches, self._rounding(record, motion, loads))
+        values = {"tau": tau, "F": F, "N": N, "f": f, "n": n}
+        return Evaluation(values, of_library(batch, values, own, self._rounding(record, motion, loads)), own)
 
     def _run(self, motion: Motion, loads: Sequence[Load]) -> Record:
         """Call MuJoCo on each state and keep what it leaves in `data`, which the next call overwrites."""
@@ -199,7 +194,7 @@ class Motion:
     turns: dict[int, Array]
 
     @classmethod
-    def of(cls, joints: Sequence[OracleJoint], compiled: Any, q: Array, v: Array, a: Array) -> Motion:
+    def of(cls, joints: Sequence[LibraryJoint], compiled: Any, q: Array, v: Array, a: Array) -> Motion:
         """From our coordinates."""
         rows = len(q)
         motion = cls(np.empty((rows, compiled.nq)), np.empty((rows, compiled.nv)), np.empty((rows, compiled.nv)), {})
@@ -214,7 +209,7 @@ class Motion:
             motion.q[:, joint.q], motion.v[:, joint.v], motion.a[:, joint.v] = q_, v_, a_
         return motion
 
-    def in_links(self, joints: Sequence[OracleJoint], tau: Array) -> Array:
+    def in_links(self, joints: Sequence[LibraryJoint], tau: Array) -> Array:
         """MuJoCo's generalised forces as components of f and n in {i}."""
         out = tau.copy()
         for joint in joints:

@@ -29,10 +29,10 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints import CONTINUOUS, FIXED, FLOATING, PLANAR, PRISMATIC, REVOLUTE
 from rttrr_pin.core.model import Link, Model
-from rttrr_pin.errors import ModelMismatchError, OracleError
-from rttrr_pin.implementations import urdf_of
-from rttrr_pin.implementations.joint_maps import OracleJoint, own_slices
+from rttrr_pin.errors import ImplementationError, ModelMismatchError
+from rttrr_pin.implementations.joint_maps import LibraryJoint, own_slices
 from rttrr_pin.implementations.model_comparison import differs
+from rttrr_pin.implementations.registry import urdf_of
 
 PREFIX = "link "
 """Before the name of each link: MuJoCo has a body of its own that is called world."""
@@ -65,7 +65,7 @@ def build(model: Model) -> Any:
     """MuJoCo's compiled model: body 1 is the root of the file, then every other link.
 
     Raises:
-        OracleError: MuJoCo refuses the file.
+        ImplementationError: MuJoCo refuses the file.
         ModelMismatchError: it read something else than we did.
     """
     with _without_log():
@@ -78,7 +78,7 @@ def build(model: Model) -> Any:
                 _prepare(spec, model, bodies)
                 compiled = spec.compile()
         except ValueError as error:
-            raise OracleError(f"MuJoCo refuses the URDF of {model.name!r}: {str(error).strip()}") from error
+            raise ImplementationError(f"MuJoCo refuses the URDF of {model.name!r}: {str(error).strip()}") from error
     if found:
         raise ModelMismatchError("MuJoCo", found)
     for name, inertial in read.items():
@@ -88,7 +88,7 @@ def build(model: Model) -> Any:
     return compiled
 
 
-def mujoco_joints(model: Model, compiled: Any) -> list[OracleJoint]:
+def mujoco_joints(model: Model, compiled: Any) -> list[LibraryJoint]:
     """The moving joints, in our order."""
     found = []
     for joint, link, (own_q, own_v) in zip(model.joints, model.links, own_slices(model), strict=True):
@@ -96,7 +96,7 @@ def mujoco_joints(model: Model, compiled: Any) -> list[OracleJoint]:
             first = compiled.body_jntadr[compiled.body(PREFIX + link.name).id]
             q, v = int(compiled.jnt_qposadr[first]), int(compiled.jnt_dofadr[first])
             at_q, at_v = slice(q, q + joint.nq), slice(v, v + joint.nv)
-            found.append(OracleJoint(joint.type, at_q, at_v, own_q, own_v, joint.mimic, joint.effects))
+            found.append(LibraryJoint(joint.type, at_q, at_v, own_q, own_v, joint.mimic, joint.effects))
     return found
 
 

@@ -1,4 +1,4 @@
-"""Pinocchio as the oracle: each of the five quantities from Pinocchio's own numbers.
+"""Pinocchio: each of the five quantities from Pinocchio's own numbers.
 
 | quantity | from |
 |---|---|
@@ -25,16 +25,18 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import ROOT_JOINT, UNIVERSE, Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.scalars import EPS
-from rttrr_pin.core.wrench import QUANTITIES, LinkWrenches
-from rttrr_pin.errors import ModelMismatchError, OracleError
-from rttrr_pin.implementations import Evaluation, urdf_of
+from rttrr_pin.core.wrench import QUANTITIES
+from rttrr_pin.errors import ImplementationError, ModelMismatchError
+from rttrr_pin.implementations.allowance import of_library
 from rttrr_pin.implementations.joint_maps import reduce_forces
 from rttrr_pin.implementations.pinocchio_joints import Motion, driving_forces, expand, pin_joints, reach
 from rttrr_pin.implementations.pinocchio_model import differences, pin_links, product
 from rttrr_pin.implementations.pinocchio_rounding import OPERATIONS, rounding
+from rttrr_pin.implementations.protocol import Batch, Evaluation
+from rttrr_pin.implementations.registry import urdf_of
 
 
-class PinocchioOracle:
+class Pinocchio:
     """Pinocchio's RNEA on the model that Pinocchio built from the same text."""
 
     name = "pinocchio"
@@ -45,19 +47,21 @@ class PinocchioOracle:
         """Build Pinocchio's model, and hold it against what the file says.
 
         Raises:
-            OracleError: the model has no URDF text, or Pinocchio refuses it.
+            ImplementationError: the model has no URDF text, or Pinocchio refuses it.
             ModelMismatchError: Pinocchio built something else.
         """
         urdf = urdf_of(model, "Pinocchio")
         reserved = {UNIVERSE, ROOT_JOINT} if model.floating else {UNIVERSE}
         taken = [joint.name for joint in model.joints[model.floating :] if joint.name in reserved]
         if taken:
-            raise OracleError(f"joint {taken[0]!r} has a name that Pinocchio keeps for itself: give it another one")
+            raise ImplementationError(
+                f"joint {taken[0]!r} has a name that Pinocchio keeps for itself: give it another one"
+            )
         try:
             root = (pin.JointModelFreeFlyer(),) if model.floating else ()
             self.pin_model = pin.buildModelFromXML(urdf, *root)
         except (ValueError, RuntimeError) as error:
-            raise OracleError(f"Pinocchio refuses the URDF of {model.name!r}: {str(error).strip()}") from error
+            raise ImplementationError(f"Pinocchio refuses the URDF of {model.name!r}: {str(error).strip()}") from error
         found = differences(model, self.pin_model)
         if found:
             raise ModelMismatchError("Pinocchio", found)
@@ -72,23 +76,17 @@ class PinocchioOracle:
         hanging = {joint for held in self._held for joint in held.hanging}
         self._hanging = {joint: place for place, joint in enumerate(sorted(hanging))}
 
-    def evaluate(self, q: Array, v: Array, a: Array, loads: Sequence[Load] = ()) -> Evaluation:
-        """tau, F, N, f, n of a batch by Pinocchio, in the frames and signs of `Robot.inverse_dynamics`.
-
-        Args:
-            q: coordinates, (N, nq) [rad or m]; a continuous joint's is its angle.
-            v: rates, (N, nv).
-            a: accelerations, (N, nv).
-            loads: payloads.
-        """
-        motion = expand(self.joints, self.pin_model, q, v, a)
-        turned = self._in_link_axes(loads, motion.q)
+    def evaluate(self, batch: Batch) -> Evaluation:
+        """tau, F, N, f, n by Pinocchio; a continuous joint's coordinate is its angle."""
+        motion = expand(self.joints, self.pin_model, batch.q, batch.v, batch.a)
+        turned = self._in_link_axes(batch.loads, motion.q)
         record = self._run(motion, turned)
         F, N = self._net(record)
         f, n = self._across_joints(record, F, N, turned)
         tau, tau_joint = (reduce_forces(self.joints, x) for x in driving_forces(self.joints, record.tau, motion))
-        wrenches = LinkWrenches(tau, F, N, f, n, tau_joint, self.model.link_names, self.model.v_names)
-        return Evaluation(wrenches, self._rounding(record, motion, F, turned))
+        values = {"tau": tau, "F": F, "N": N, "f": f, "n": n}
+        cancelling = self._rounding(record, motion, F, turned)
+        return Evaluation(values, of_library(batch, values, tau_joint, cancelling), tau_joint)
 
     def _in_link_axes(self, loads: Sequence[Load], q: Array) -> list[Load]:
         """The loads with one force and one moment for each state, in the axes of their links."""

@@ -22,11 +22,11 @@ import numpy as np
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joints import CONTINUOUS, PLANAR
 from rttrr_pin.core.model import Model
-from rttrr_pin.implementations.joint_maps import OracleJoint, friction, own_slices
+from rttrr_pin.implementations.joint_maps import LibraryJoint, friction, own_slices
 
 
 @dataclass(frozen=True, slots=True)
-class PinJoint(OracleJoint):
+class PinJoint(LibraryJoint):
     """A moving joint of ours, where Pinocchio has it.
 
     Attributes:

@@ -45,7 +45,7 @@ def rounding(pin_model: Any, links: Sequence[PinLink], spatial: Array, reach: Ar
         turning[:, joint] += turning[:, parents[joint]]
         acceleration[:, joint] += acceleration[:, parents[joint]] + reach[:, joint] * turning[:, parents[joint]]
 
-    mass = np.array([inertia.mass for inertia in pin_model.inertias])
+    mass = np.array([abs(inertia.mass) for inertia in pin_model.inertias])  # a size, also where a file has it negative
     c = np.array([np.linalg.norm(inertia.lever) for inertia in pin_model.inertias])
     tensor = np.array([np.linalg.norm(inertia.inertia) for inertia in pin_model.inertias])
     force = mass * (acceleration + c * turning)
@@ -56,7 +56,7 @@ def rounding(pin_model: Any, links: Sequence[PinLink], spatial: Array, reach: Ar
 
     at = [link.joint for link in links]
     arm = np.array([np.linalg.norm(link.p) for link in links])
-    own_mass = np.array([link.mass for link in links])
+    own_mass = np.array([abs(link.mass) for link in links])
     own_arm = arm + np.array([np.linalg.norm(link.com) for link in links])
     own_tensor = np.array([np.linalg.norm(link.inertia) for link in links])
     out = {

@@ -11,16 +11,17 @@ import numpy as np
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import blocks
 from rttrr_pin.core.inputs import whole_number
-from rttrr_pin.core.payload import Load
+from rttrr_pin.core.payload import Load, RandomPayload
 from rttrr_pin.core.wrench import Wrench
 from rttrr_pin.errors import InputError
 from rttrr_pin.exact.rounding import values_and_bounds
+from rttrr_pin.implementations import Batch
 from rttrr_pin.laws.case import Case
 from rttrr_pin.laws.table import Law, chosen
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.compare import Worst
-from rttrr_pin.validation.run import in_words
-from rttrr_pin.validation.states import LAST_STATE, Sampler, States
+from rttrr_pin.validation.comparison import described
+from rttrr_pin.validation.states import LAST_STATE, Sampler
 
 BLOCK = 1024
 """States tried at a time; the memory of a run is that of one block. With fewer, calls cost more than arithmetic."""
@@ -121,7 +122,8 @@ def check_laws(
     if not robot.model.links:
         raise InputError(f"robot {robot.name!r} has no joint, so that no law says anything of it")
     start = time.perf_counter()
-    sampler = Sampler(robot.model, sampling, seed, robot.link_names[-1] if payload is None else robot.load_of(payload))
+    load = RandomPayload(robot.link_names[-1]) if payload is None else robot.load_of(payload)
+    sampler = Sampler(robot.model, sampling, seed, load)
     rows = tuple(LawRow(law) for law in laws)
     for part in blocks(states, BLOCK):
         drawn = sampler.draw(part.start, part.stop - part.start)
@@ -136,13 +138,13 @@ def check_laws(
         n_states=states,
         sampling=sampling,
         seed=seed,
-        payload=in_words(payload or "random"),
+        payload=described(payload or RandomPayload()),
         rows=rows,
         seconds=time.perf_counter() - start,
     )
 
 
-def _loads(robot: Robot, drawn: States) -> Sequence[Load]:
+def _loads(robot: Robot, drawn: Batch) -> Sequence[Load]:
     """The random load of each state, and another in base axes at a link further in."""
     (load,) = drawn.loads
     return load, Load(len(robot.link_names) // 2, load.f[:, ::-1], load.n[:, ::-1], in_base=True)

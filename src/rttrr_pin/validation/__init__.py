@@ -1,4 +1,4 @@
-"""Is our recursion, or anyone's, right: states, comparison with an oracle, verdict, worst state."""
+"""Is one program right, judged by another: states, comparison, verdict, worst state."""
 
 from __future__ import annotations
 

@@ -1,7 +1,6 @@
-"""Settle states by the gate: ours and the oracle's, each against the true values and within its own half of the gate.
+"""Who is right in a state: each program against enclosures of the true values, within its own allowance.
 
-The two halves are `compare`'s: ours may be off by the running error bound, the oracle by its allowance. So where a
-state is outside the gate, at least one of the two is outside its half.
+The tolerance is the sum of the allowances, so where a state is beyond it, at least one program is beyond its own.
 """
 
 from __future__ import annotations
@@ -11,76 +10,39 @@ from collections.abc import Sequence
 import numpy as np
 
 from rttrr_pin.core.model import Model
-from rttrr_pin.core.wrench import LINK_QUANTITIES, LinkWrenches
 from rttrr_pin.errors import InputError
 from rttrr_pin.exact.adjudication import Adjudication, Assessment, Deviation, in_order, nearest
 from rttrr_pin.exact.enclosures import Enclosures, enclose
 from rttrr_pin.exact.parameters import Parameters, exact_parameters
-from rttrr_pin.implementations import Evaluation
-from rttrr_pin.validation.compare import Comparison, Gap, ratio
-from rttrr_pin.validation.states import States
+from rttrr_pin.implementations import Batch, Evaluation
+from rttrr_pin.validation.compare import Comparison, ratio
 
 
-def adjudicate_state(
-    model: Model, drawn: States, ours: LinkWrenches, bound: LinkWrenches, others: Sequence[tuple[str, Evaluation]]
-) -> tuple[Adjudication, ...]:
-    """Who is right in one state, ours or each of the others; the truth is the same for all.
+def adjudicate(batch: Batch, results: Sequence[tuple[str, Evaluation]]) -> Adjudication:
+    """Each program in one state, the subject first.
 
     Args:
-        model: the robot.
-        drawn: the state, (1, ...).
-        ours: our result, (1, ...).
-        bound: running error bound of ours.
-        others: by name, an oracle's result, and what it rounds beyond ours.
+        batch: the state, a batch of one.
+        results: by name, what each program gave.
     """
-    enclosures = enclose(model, drawn.q, drawn.v, drawn.a, drawn.loads, true_numbers(model))
-    adjudicated = (adjudicate(model, enclosures, ours, theirs, bound, name, drawn.first) for name, theirs in others)
-    return tuple(adjudicated)
+    enclosures = enclose(batch.model, batch.q, batch.v, batch.a, batch.loads, true_parameters(batch.model))
+    assessments = tuple(assess(batch, enclosures, name, evaluation) for name, evaluation in results)
+    return Adjudication(batch.first, int(np.max(enclosures.bits)), assessments)
 
 
-def adjudicate(
-    model: Model,
-    enclosures: Enclosures,
-    ours: LinkWrenches,
-    theirs: Evaluation,
-    bound: LinkWrenches,
-    oracle: str,
-    state: int = 0,
-) -> Adjudication:
-    """Who is right, by enclosures of the true values of one state, (1, ...) each.
-
-    Args:
-        model: the robot.
-        enclosures: the true values.
-        ours: our result.
-        theirs: the oracle's, and what it rounds beyond ours.
-        bound: running error bound of ours.
-        oracle: its name.
-        state: its index, for the report.
-    """
-    given = LINK_QUANTITIES if theirs.wrenches.links else ()
-    nothing = {key: np.zeros((1, len(model.links))) for key in LINK_QUANTITIES}
-    sides = []
-    for name, computed, known, rounding in (
-        ("ours", ours, LINK_QUANTITIES, nothing),
-        (oracle, theirs.wrenches, given, theirs.rounding),
-    ):
-        comparison = Comparison(model, ("tau", *known))
-        truth = Evaluation(nearest(enclosures, computed), rounding)
-        rows = zip(comparison.rows, comparison.gaps(computed, truth, bound), strict=True)
-        deviations = [
-            Deviation(row.quantity, row.at, float(gap.relative[0]), _share(gap, name == "ours")) for row, gap in rows
-        ]
-        sides.append(Assessment(name, in_order(model, deviations)))
-    return Adjudication(state, int(np.max(enclosures.bits)), *sides)
+def assess(batch: Batch, enclosures: Enclosures, name: str, evaluation: Evaluation) -> Assessment:
+    """How far one program is off the true values of one state, quantity by quantity, in the order of the recursion."""
+    comparison = Comparison(batch.model, tuple(evaluation.values))
+    truth = Evaluation(nearest(enclosures, evaluation.values), {}, evaluation.tau_joint)
+    truth = Evaluation(truth.values, {key: np.zeros(x.shape[:2]) for key, x in truth.values.items()}, truth.tau_joint)
+    rows = zip(comparison.rows, comparison.differences(batch, evaluation, truth), strict=True)
+    deviations = [
+        Deviation(row.quantity, row.at, float(x.relative[0]), float(ratio(x.error, x.of_subject)[0])) for row, x in rows
+    ]
+    return Assessment(name, in_order(batch.model, deviations))
 
 
-def _share(gap: Gap, of_ours: bool) -> float:
-    """|computed - true| as a share of one half of the gate."""
-    return float(ratio(gap.difference, gap.own if of_ours else gap.allowance)[0])
-
-
-def true_numbers(model: Model) -> Parameters:
+def true_parameters(model: Model) -> Parameters:
     """Whose numbers decide who is right: the file's, as any program reads them; without a file, the model's own."""
     try:
         exact_parameters(model, "read")

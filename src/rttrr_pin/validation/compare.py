@@ -1,21 +1,16 @@
 """Two results side by side: how far apart, and whether rounding can explain it.
 
-The gate, for each state, quantity and link (or joint):
+For each state, quantity and link (or degree of freedom), with Euclidean norms:
 
-    |ours - oracle| <= |bound| + (|bound of x| + 4 eps |x| + cancelled)
+    |subject - reference| <= allowance of the subject + allowance of the reference
 
-with Euclidean norms. `bound` is the running error bound on our own rounding (`enclose.rounding`). The bracket is the
-oracle's allowance. It adds up the same terms in another order and in other axes, so it gets the same bound once more,
-but for the whole vector x that the quantity belongs to: F, N, f or n of the link itself, and for tau the n of the
-joint (its f, where it slides), of which tau is one component. In other axes an error of one component is an error of
-all. The 4 eps are for the rounding of what is handed to the oracle; `cancelled` is the rounding of terms that only the
-oracle's formulas have and that cancel in its result (`oracles.Evaluation.rounding`). Where the oracle bounds the
-rounding of its own driving forces, that bound is the bracket.
+Each allowance says how far rounding can take that program from the true value (`implementations.allowance`). There is
+no tolerance to choose.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -23,11 +18,9 @@ import numpy as np
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import EPS
-from rttrr_pin.core.wrench import LINK_QUANTITIES, QUANTITIES, LinkWrenches
-from rttrr_pin.implementations import Evaluation
-
-HANDOVER = 4 * EPS
-"""Relative: payloads, placements and angles are rounded on their way into the oracle's conventions."""
+from rttrr_pin.core.wrench import LINK_QUANTITIES, QUANTITIES
+from rttrr_pin.implementations import Batch, Evaluation, default_allowance
+from rttrr_pin.implementations.allowance import carriers, norm
 
 
 @dataclass(slots=True)
@@ -46,7 +39,7 @@ class Worst:
 
 
 ADJUDICATED = 10
-"""Failing states that are remembered, the worst."""
+"""Failing states that the exact reference decides, the worst."""
 
 
 @dataclass(slots=True)
@@ -54,24 +47,24 @@ class Ranking:
     """Which states to look at again.
 
     Attributes:
-        failing: how many lie outside the gate.
-        worst: those that lie farthest outside, worst first, at most `ADJUDICATED`: share and state.
-        passing: the state within the gate that comes closest to it.
+        failing: how many lie beyond the tolerance.
+        worst: those that lie farthest beyond, worst first, at most `ADJUDICATED`: error / tolerance and state.
+        passing: the state within the tolerance that comes closest to it.
     """
 
     failing: int = 0
     worst: list[tuple[float, int]] = field(default_factory=list)
     passing: Worst = field(default_factory=Worst)
 
-    def see(self, shares: Array, first: int) -> None:
-        """Take in the largest share of each of consecutive states."""
-        outside = np.flatnonzero(shares > 1.0)
-        self.failing += len(outside)
-        found = self.worst + [(float(shares[k]), first + int(k)) for k in outside]
-        self.worst = sorted(found, key=lambda pair: (-pair[0], pair[1]))[:ADJUDICATED]
-        if len(outside) < len(shares):
-            k = int(np.argmax(np.where(shares > 1.0, -1.0, shares)))
-            self.passing.see(shares[k : k + 1], first + k)
+    def see(self, ratios: Array, first: int) -> None:
+        """Take in the largest error / tolerance of each of consecutive states."""
+        beyond = np.flatnonzero(ratios > 1.0)
+        self.failing += len(beyond)
+        seen = self.worst + [(float(ratios[k]), first + int(k)) for k in beyond]
+        self.worst = sorted(seen, key=lambda pair: (-pair[0], pair[1]))[:ADJUDICATED]
+        if len(beyond) < len(ratios):
+            k = int(np.argmax(np.where(ratios > 1.0, -1.0, ratios)))
+            self.passing.see(ratios[k : k + 1], first + k)
 
     def chosen(self) -> list[int]:
         """The worst failing states, then the worst passing one."""
@@ -86,11 +79,11 @@ class Row:
         quantity: tau, F, N, f or n.
         at: name of the link (of the joint for tau).
         unit: of the quantity.
-        absolute: largest |ours - oracle| in that unit.
-        relative: largest |ours - oracle| / |oracle| in eps. For tau the divisor is the norm of the joint's n (of its
-            f, where it slides), of which tau is one component.
-        share: largest |ours - oracle| as a share of what the gate allows.
-        failures: states outside the gate.
+        absolute: largest |subject - reference| in that unit.
+        relative: largest |subject - reference| / |reference| in eps. For tau the divisor is the norm of the joint's n
+            (of its f, where it slides), of which tau is one component.
+        of_tolerance: largest error / tolerance.
+        failures: states beyond the tolerance.
     """
 
     quantity: str
@@ -98,146 +91,125 @@ class Row:
     unit: str
     absolute: Worst = field(default_factory=Worst)
     relative: Worst = field(default_factory=Worst)
-    share: Worst = field(default_factory=Worst)
+    of_tolerance: Worst = field(default_factory=Worst)
     failures: int = 0
 
     @property
     def passed(self) -> bool:
-        """Whether every state lies within the gate."""
+        """Whether every state lies within the tolerance."""
         return self.failures == 0
 
 
 @dataclass(frozen=True, slots=True)
-class Gap:
+class Difference:
     """One quantity at one link over consecutive states, (N,) each.
 
     Attributes:
-        difference: |ours - oracle|.
-        size: |oracle|.
-        own: what our rounding may make of it.
-        allowance: what the oracle's may.
+        error: |subject - reference|.
+        size: |reference|.
+        of_subject: what the subject's rounding may make of it.
+        of_reference: what the reference's may.
     """
 
-    difference: Array
+    error: Array
     size: Array
-    own: Array
-    allowance: Array
+    of_subject: Array
+    of_reference: Array
 
     @property
-    def allowed(self) -> Array:
-        """The gate."""
-        return self.own + self.allowance
+    def tolerance(self) -> Array:
+        """What rounding can explain."""
+        return self.of_subject + self.of_reference
 
     @property
     def relative(self) -> Array:
-        """|ours - oracle| / |oracle| in eps; 0 where they are equal."""
-        return ratio(self.difference, self.size * EPS)
+        """|subject - reference| / |reference| in eps; 0 where they are equal."""
+        return ratio(self.error, self.size * EPS)
 
     @property
-    def share(self) -> Array:
-        """|ours - oracle| as a share of what is allowed; 0 where they are equal."""
-        return ratio(self.difference, self.allowed)
+    def of_tolerance(self) -> Array:
+        """Error / tolerance; 0 where they are equal."""
+        return ratio(self.error, self.tolerance)
 
 
 class Comparison:
     """Gathers the worst over any number of states, in memory that does not grow with them.
 
     Attributes:
+        quantities: those that both programs give.
         rows: of each quantity at each link or joint.
-        whole: by quantity, the largest |ours - oracle| / |oracle| in eps, in the norm over all links or joints.
+        whole: by quantity, the largest relative error in eps, in the norm over all links or joints.
     """
 
     def __init__(self, model: Model, quantities: Sequence[str] = QUANTITIES) -> None:
-        """Prepare to compare the quantities that an oracle gives."""
-        self.rows = [Row(*labels) for labels in _labels(model) if labels[0] in quantities]
-        self.whole = {quantity: Worst() for quantity in quantities}
-        self._shares = _shares(model)
+        """Prepare to compare these quantities."""
+        self.quantities = tuple(key for key in QUANTITIES if key in quantities)
+        self.rows = [Row(*labels) for labels in _labels(model) if labels[0] in self.quantities]
+        self.whole = {quantity: Worst() for quantity in self.quantities}
+        self._carriers = carriers(model)
 
-    def add(self, first: int, ours: LinkWrenches, oracle: Evaluation, bound: LinkWrenches) -> Array:
-        """Take in the results of consecutive states, (N, ...) each; return the largest share of each state, (N,)."""
-        shares = np.zeros(len(ours.tau))
-        for row, gap in zip(self.rows, self.gaps(ours, oracle, bound), strict=True):
-            share = gap.share
-            row.absolute.see(gap.difference, first)
-            row.relative.see(gap.relative, first)
-            row.share.see(share, first)
-            row.failures += int((share > 1.0).sum())
-            np.maximum(shares, share, out=shares)
+    def add(self, batch: Batch, subject: Evaluation, reference: Evaluation) -> Array:
+        """Take in the results of consecutive states; return the largest error / tolerance of each state, (N,)."""
+        first, ratios = batch.first, np.zeros(len(batch))
+        for row, difference in zip(self.rows, self.differences(batch, subject, reference), strict=True):
+            of_tolerance = difference.of_tolerance
+            row.absolute.see(difference.error, first)
+            row.relative.see(difference.relative, first)
+            row.of_tolerance.see(of_tolerance, first)
+            row.failures += int((of_tolerance > 1.0).sum())
+            np.maximum(ratios, of_tolerance, out=ratios)
         for quantity, worst in self.whole.items():
-            mine, theirs = (getattr(x, quantity).reshape(len(ours.tau), -1) for x in (ours, oracle.wrenches))
-            worst.see(ratio(_finite_norm(mine - theirs), EPS * _norm(theirs)), first)
-        return shares
+            x, y = (side.values[quantity].reshape(len(batch), -1) for side in (subject, reference))
+            worst.see(ratio(_or_infinite(norm(x - y)), EPS * norm(y)), first)
+        return ratios
 
-    def gaps(self, ours: LinkWrenches, oracle: Evaluation, bound: LinkWrenches) -> Iterator[Gap]:
-        """The gap of each row, in the order of `rows`."""
-        theirs, cancelled = oracle.wrenches, oracle.rounding
-        carrier = theirs if theirs.links else ours  # whose f and n say how large a driving force is
-        for column, shares in enumerate(self._shares):
-            difference = np.abs(ours.tau[:, column] - theirs.tau[:, column])
-            own = np.abs(theirs.tau_joint[:, column])
-            size = own + sum(weight * _norm(getattr(carrier, whole)[:, link]) for weight, whole, link in shares)
-            mine_bound = np.abs(bound.tau[:, column])
-            if "tau" in cancelled:
-                yield _gap(difference, mine_bound, size, cancelled["tau"][:, column], handed=0.0)
-                continue
-            allowance = HANDOVER * own
-            for weight, whole, link in shares:
-                x_bound = _norm(getattr(bound, whole)[:, link])
-                allowance = allowance + weight * (x_bound + cancelled[whole][:, link])
-            yield _gap(difference, mine_bound, size, allowance)
-        for key in (key for key in LINK_QUANTITIES if key in self.whole):
-            for link in range(len(ours.links)):
-                mine, their, mine_bound = (getattr(result, key)[:, link] for result in (ours, theirs, bound))
-                x_bound = _norm(mine_bound)
-                yield _gap(_norm(mine - their), x_bound, _norm(their), x_bound + cancelled[key][:, link])
+    def differences(self, batch: Batch, subject: Evaluation, reference: Evaluation) -> Iterator[Difference]:
+        """The difference of each row, in the order of `rows`."""
+        allowances = [_allowance(batch, side) for side in (subject, reference)]
+        for key in self.quantities:
+            x, y = subject.values[key], reference.values[key]
+            errors = np.abs(x - y) if key == "tau" else norm(x - y)
+            lengths = self._sizes_of_tau(batch, subject, reference) if key == "tau" else norm(y)
+            errors = np.where(np.isfinite(errors), errors, np.inf)  # as far off as can be
+            lengths = np.where(np.isfinite(lengths), lengths, 0.0)
+            for column in range(errors.shape[1]):
+                parts = (side[key][:, column] for side in allowances)
+                yield Difference(errors[:, column], lengths[:, column], *parts)
 
-
-def _gap(difference: Array, bound: Array, x: Array, x_bound: Array, handed: float = HANDOVER) -> Gap:
-    difference = np.where(np.isfinite(difference), difference, np.inf)  # as far off as can be
-    x = np.where(np.isfinite(x), x, 0.0)  # and must not widen the gate of what else is measured against it
-    return Gap(difference, size=x, own=bound, allowance=x_bound + handed * x)
+    def _sizes_of_tau(self, batch: Batch, subject: Evaluation, reference: Evaluation) -> Array:
+        """The norms of the vectors that driving forces are components of, (N, nv)."""
+        sides = [side for side in (reference, subject) if "f" in side.values and "n" in side.values]
+        vectors = sides[0].values if sides else dict(batch.recursion[0].items())
+        joints = [side.tau_joint for side in (reference, subject) if side.tau_joint is not None]
+        own = np.abs(joints[0] if joints else batch.recursion[0].tau_joint)
+        sizes = own.copy()
+        for column, parts in enumerate(self._carriers):
+            sizes[:, column] += sum(weight * norm(vectors[key][:, link]) for weight, key, link in parts)
+        return sizes
 
 
-def _finite_norm(vectors: Array) -> Array:
-    """The norm; infinite where there is a NaN."""
-    norm = _norm(vectors)
-    return np.where(np.isfinite(norm), norm, np.inf)
+def _allowance(batch: Batch, evaluation: Evaluation) -> Mapping[str, Array]:
+    """What rounding may make of a result; what is not finite excuses nothing."""
+    known = default_allowance(batch) if evaluation.allowance is None else evaluation.allowance
+    return {key: np.where(np.isfinite(x), x, 0.0) for key, x in known.items()}
 
 
-def _norm(vectors: Array) -> Array:
-    norm: Array = np.linalg.norm(vectors, axis=-1)
-    return norm
+def _or_infinite(lengths: Array) -> Array:
+    return np.where(np.isfinite(lengths), lengths, np.inf)
 
 
 def ratio(part: Array, whole: Array) -> Array:
     """The quotient part / whole; 0 where part is 0, inf where only whole is."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = np.where(part == 0.0, 0.0, part / whole)
-    return np.where(np.isnan(ratio), np.inf, ratio)
-
-
-Share = tuple[float, str, int]
-"""Weight, quantity (f or n) and link of a vector that a driving force is a component of."""
-
-
-def _shares(model: Model) -> list[list[Share]]:
-    """For each degree of freedom the vectors that its driving force is made of: its own, and those of followers."""
-    shares: dict[int, list[list[Share]]] = {
-        i: [[(1.0, "n" if rotates else "f", i)] for rotates in model.joints[i].type.rotations]
-        for i in model.independent
-    }
-    for i, joint in enumerate(model.joints):
-        if joint.mimic is not None:
-            weight = abs(joint.mimic.multiplier)
-            shares[joint.mimic.joint][0].append((weight, "n" if joint.type.rotates else "f", i))
-    return [freedom for i in model.independent for freedom in shares[i]]
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        quotient = np.where(part == 0.0, 0.0, part / whole)
+    return np.where(np.isnan(quotient), np.inf, quotient)
 
 
 def _labels(model: Model) -> Iterator[tuple[str, str, str]]:
     """Quantity, place and unit of each row."""
     for joint in model.moving:
-        for label, rotates in zip(joint.v_labels(), joint.type.rotations, strict=True):
-            yield "tau", label, "N m" if rotates else "N"
-    for quantity, unit in (("F", "N"), ("N", "N m"), ("f", "N"), ("n", "N m")):
+        for name, rotates in zip(joint.v_labels(), joint.type.rotations, strict=True):
+            yield "tau", name, "N m" if rotates else "N"
+    for key in LINK_QUANTITIES:
         for name in model.link_names:
-            yield quantity, name, unit
+            yield key, name, "N" if key in ("F", "f") else "N m"

@@ -13,7 +13,7 @@ from typing import Literal
 
 from rttrr_pin.core.inputs import whole_number
 from rttrr_pin.errors import ModelMismatchError, RttrrError, UnknownNameError
-from rttrr_pin.implementations import ORACLES
+from rttrr_pin.implementations import names
 from rttrr_pin.loading import load
 from rttrr_pin.validation.run import validate
 from rttrr_pin.validation.states import LAST_STATE, SAMPLINGS
@@ -26,16 +26,18 @@ class Task:
     """What each robot goes through.
 
     Attributes:
-        states: how many for each base.
+        n_states: how many for each base.
         seed: of the generator.
         sampling: how states are drawn.
-        oracle: the program to compare with.
+        subject: the program that is judged, by name.
+        reference: the program that it is compared with, by name.
     """
 
-    states: int = 10_000
+    n_states: int = 10_000
     seed: int = 0
     sampling: str = "uniform"
-    oracle: str = "pinocchio"
+    subject: str = "kernel"
+    reference: str = "pinocchio"
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,12 +47,12 @@ class Entry:
     Attributes:
         name: of the robot among the sources.
         base: "fixed" or "floating".
-        verdict: "agree", "disagree", or "unusable" where the file or the oracle stops it.
+        verdict: "agree", "disagree", or "unusable" where the file or a program stops it.
         joints: degrees of freedom.
         links: links that a joint carries.
         eps: largest normwise error of any quantity, over all links, in eps.
-        share: largest share of the gate.
-        worst: the quantity, the place and the state of that share.
+        of_tolerance: largest error / tolerance.
+        worst: the quantity, the place and the state of that.
         defect: what stops it, or what differs; empty otherwise.
         seconds: wall time.
     """
@@ -61,7 +63,7 @@ class Entry:
     joints: int = 0
     links: int = 0
     eps: float = 0.0
-    share: float = 0.0
+    of_tolerance: float = 0.0
     worst: str = ""
     defect: str = ""
     seconds: float = 0.0
@@ -98,11 +100,12 @@ def validate_many(
 
 def _check(task: Task) -> None:
     """What is wrong for every robot is an error once, not a row for each."""
-    whole_number("states", task.states, 1, LAST_STATE, "10^15, since none would prove nothing")
+    whole_number("n_states", task.n_states, 1, LAST_STATE, "10^15, since none would prove nothing")
     if task.sampling not in SAMPLINGS:
-        raise UnknownNameError("family of states", task.sampling, SAMPLINGS)
-    if task.oracle not in ORACLES:
-        raise UnknownNameError("oracle", task.oracle, ORACLES)
+        raise UnknownNameError("sampling", task.sampling, SAMPLINGS)
+    for program in (task.subject, task.reference):
+        if program not in names():
+            raise UnknownNameError("implementation", program, names())
 
 
 Job = tuple[str, str, Literal["fixed", "floating"], Task]
@@ -130,20 +133,20 @@ def _one(job: Job) -> Entry:
     start = time.perf_counter()
     try:
         robot = load(Path(path), base=base)
-        result = validate(robot, task.states, task.seed, task.sampling, oracle=task.oracle)
+        result = validate(robot, task.subject, task.reference, task.n_states, task.seed, task.sampling)
     except RttrrError as error:
         verdict: Literal["disagree", "unusable"] = "disagree" if isinstance(error, ModelMismatchError) else "unusable"
-        told = str(error).replace(str(path), Path(path).name)
-        return Entry(name, base, verdict, defect=told, seconds=time.perf_counter() - start)
+        defect = str(error).replace(str(path), Path(path).name)
+        return Entry(name, base, verdict, defect=defect, seconds=time.perf_counter() - start)
     worst = result.worst
     return Entry(
         name,
         base,
-        "agree" if result.agrees else "disagree",
+        "agree" if result.passed else "disagree",
         joints=robot.model.nv,
         links=len(robot.link_names),
         eps=max(seen.value for seen in result.whole.values()),
-        share=worst.share.value if worst else 0.0,
-        worst=f"{worst.quantity} at {worst.at}, state {worst.share.state}" if worst else "",
+        of_tolerance=worst.of_tolerance.value if worst else 0.0,
+        worst=f"{worst.quantity} at {worst.at}, state {worst.of_tolerance.state}" if worst else "",
         seconds=time.perf_counter() - start,
     )

@@ -1,24 +1,25 @@
-"""Run a validation: block by block, ours against the oracles'."""
+"""Compare a subject with its references on many states, block by block."""
 
 from __future__ import annotations
 
 import platform
 import time
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable
+from dataclasses import asdict, dataclass, field
 from importlib import metadata
+from typing import Any
 
 import numpy as np
 
 from rttrr_pin.core.batch import blocks
 from rttrr_pin.core.inputs import whole_number
 from rttrr_pin.core.joint import JointEffects
-from rttrr_pin.core.wrench import Wrench
 from rttrr_pin.exact import Adjudication
-from rttrr_pin.implementations import Oracle
+from rttrr_pin.implementations import Implementation, label
+from rttrr_pin.implementations.registry import Source
 from rttrr_pin.robot import Robot
-from rttrr_pin.validation.compare import Row, Worst
-from rttrr_pin.validation.comparison_run import ComparisonRun, Oracles, Reference
+from rttrr_pin.validation.compare import Comparison, Row, Worst
+from rttrr_pin.validation.comparison import Payload, References, Run, described
 from rttrr_pin.validation.states import LAST_STATE
 
 BLOCK = 1024
@@ -27,16 +28,18 @@ BLOCK = 1024
 Progress = Callable[[int], None]
 """Called with the number of states done so far."""
 
+TOLERANCE = "|subject - reference| <= allowance of the subject + allowance of the reference (docs/tolerance.md)"
+
 
 @dataclass(frozen=True, slots=True)
 class ReferenceSummary:
-    """What was seen of one oracle.
+    """What was seen of one reference.
 
     Attributes:
-        name: of the other program.
+        name: of the program.
         version: of it.
         rows: what was seen of each quantity at each link or joint.
-        whole: by quantity, the largest error in eps, in the norm over all links or joints.
+        whole: by quantity, the largest relative error in eps, in the norm over all links or joints.
     """
 
     name: str
@@ -45,20 +48,29 @@ class ReferenceSummary:
     whole: dict[str, Worst]
 
     @classmethod
-    def of(cls, reference: Reference) -> ReferenceSummary:
-        """What an opponent's comparison has gathered."""
-        oracle, comparison = reference.oracle, reference.comparison
-        return cls(oracle.name, oracle.version, tuple(comparison.rows), comparison.whole)
+    def of(cls, reference: Implementation, comparison: Comparison) -> ReferenceSummary:
+        """What a comparison has gathered."""
+        return cls(reference.name, reference.version, tuple(comparison.rows), comparison.whole)
 
     @property
-    def agrees(self) -> bool:
-        """Whether there was something to compare, and every state of every row lies within the gate."""
+    def passed(self) -> bool:
+        """Whether there was something to compare, and every state of every row lies within the tolerance."""
         return bool(self.rows) and all(row.passed for row in self.rows)
 
     @property
     def worst(self) -> Row:
-        """The row that comes closest to its gate, or lies furthest beyond."""
-        return max(self.rows, key=lambda row: row.share.value)
+        """The row that comes closest to its tolerance, or lies furthest beyond."""
+        return max(self.rows, key=lambda row: row.of_tolerance.value)
+
+    def to_dict(self) -> dict[str, Any]:
+        """By quantity and place, the worst and where."""
+        quantities: dict[str, dict[str, Any]] = {}
+        for row in self.rows:
+            quantities.setdefault(row.quantity, {})[row.at] = asdict(row) | {"passed": row.passed}
+        worst = {key: getattr(self.worst, key) for key in ("quantity", "at")} | asdict(self.worst.of_tolerance)
+        normwise = {quantity: asdict(seen) for quantity, seen in self.whole.items()}
+        names = {"reference": f"{self.name} {self.version}".rstrip(), "passed": self.passed}
+        return {**names, "worst": worst, "normwise_eps": normwise, "quantities": quantities}
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,89 +81,134 @@ class Validation:
         robot: its name.
         base: "fixed" or "floating".
         gravity: the field in the base frame [m/s^2].
-        effects: by joint, what joints take themselves; those that take nothing are left out.
-        against: the other programs, and what was seen of each.
+        effects: by joint, armature, damping and friction; joints that have none are left out.
+        subject: name and version of the program that is judged.
+        references: those that it was compared with, and what was seen of each.
         n_states: how many states were compared.
-        sampling: how they were drawn.
+        sampling: how they were drawn; "table" where a table of results brought them.
         seed: of the generator.
         payload: what the robot carried, in words.
-        ours: which program stood on our side, in words.
+        notes: what a reader of the verdict must know, such as the digits that a table is judged at.
         seconds: wall time.
         versions: of what took part.
-        failing: how many states lie outside the gate of any oracle.
-        adjudicated: who is right, by balls: in the worst failing states, worst first, then in the worst passing one; of
-            several oracles one settlement each, in their order, for every such state.
+        failing: how many states lie beyond the tolerance of any reference.
+        adjudications: who is right, by the exact reference: in the worst failing states, worst first, then in the worst
+            passing one.
     """
 
     robot: str
     base: str
     gravity: tuple[float, ...]
     effects: dict[str, JointEffects]
-    against: tuple[ReferenceSummary, ...]
+    subject: str
+    references: tuple[ReferenceSummary, ...]
     n_states: int
     sampling: str
     seed: int
     payload: str
-    ours: str
+    notes: tuple[str, ...]
     seconds: float
     versions: dict[str, str] = field(default_factory=dict)
     failing: int = 0
-    adjudicated: tuple[Adjudication, ...] = ()
+    adjudications: tuple[Adjudication, ...] = ()
 
     @property
-    def oracle(self) -> str:
-        """Names and versions of the other programs."""
-        return ", ".join(f"{other.name} {other.version}" for other in self.against)
+    def reference(self) -> str:
+        """Names and versions of the references."""
+        return ", ".join(f"{other.name} {other.version}".rstrip() for other in self.references)
 
     @property
     def rows(self) -> tuple[Row, ...]:
-        """What was seen of each quantity at each link or joint, oracle by oracle."""
-        return tuple(row for other in self.against for row in other.rows)
+        """What was seen of each quantity at each link or joint, reference by reference."""
+        return tuple(row for other in self.references for row in other.rows)
 
     @property
     def whole(self) -> dict[str, Worst]:
-        """By quantity, the largest error in eps against any oracle, in the norm over all links or joints."""
-        found: dict[str, Worst] = {}
-        for other in self.against:
+        """By quantity, the largest relative error in eps against any reference, over all links or joints."""
+        largest: dict[str, Worst] = {}
+        for other in self.references:
             for quantity, worst in other.whole.items():
-                found[quantity] = max(worst, found.get(quantity, worst), key=lambda seen: seen.value)
-        return found
+                largest[quantity] = max(worst, largest.get(quantity, worst), key=lambda seen: seen.value)
+        return largest
 
     @property
-    def agrees(self) -> bool:
-        """Whether every state of every row of every oracle lies within the gate."""
-        return all(other.agrees for other in self.against)
+    def passed(self) -> bool:
+        """Whether every state of every row of every reference lies within the tolerance."""
+        return all(other.passed for other in self.references)
 
     @property
     def worst(self) -> Row | None:
-        """The row that comes closest to its gate, or lies furthest beyond; None for a robot without joints."""
-        return max(self.rows, key=lambda row: row.share.value, default=None)
+        """The row that comes closest to its tolerance, or lies furthest beyond; None for a robot without joints."""
+        return max(self.rows, key=lambda row: row.of_tolerance.value, default=None)
 
-    @property
-    def adjudicated_states(self) -> list[tuple[Adjudication, ...]]:
-        """The settlements state by state, one for each oracle."""
-        count = len(self.against)
-        return [self.adjudicated[k : k + count] for k in range(0, len(self.adjudicated), count)]
+    def summary(self) -> str:
+        """The verdict in one sentence."""
+        compared = f"{self.subject} against {self.reference} on {self.n_states:,} states of {self.robot}"
+        if self.passed:
+            return f"PASS {compared}: all within rounding"
+        bad = [row for row in self.rows if not row.passed]
+        return f"FAIL {compared}: {self.failing:,} states beyond rounding, first {bad[0].quantity} at {bad[0].at}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as data for JSON."""
+        return {
+            "schema": 1,
+            "passed": self.passed,
+            "robot": self.robot,
+            "base": self.base,
+            "gravity": self.gravity,
+            "joint_effects": {name: asdict(effects) for name, effects in self.effects.items()},
+            "subject": self.subject,
+            "references": [other.to_dict() for other in self.references],
+            "n_states": self.n_states,
+            "sampling": self.sampling,
+            "seed": self.seed,
+            "payload": self.payload,
+            "notes": self.notes,
+            "tolerance": TOLERANCE,
+            "failing_states": self.failing,
+            "adjudications": [adjudication_dict(one) for one in self.adjudications],
+            "versions": self.versions,
+            "seconds": self.seconds,
+        }
+
+
+def adjudication_dict(adjudication: Adjudication) -> dict[str, Any]:
+    """Who is right in one state, as data."""
+    programs = [
+        {
+            "program": one.name,
+            "right": one.right,
+            "first_wrong": None if one.first_wrong is None else asdict(one.first_wrong),
+            "farthest": asdict(one.farthest),
+        }
+        for one in adjudication.assessments
+    ]
+    return {"state": adjudication.state, "bits": adjudication.bits, "programs": programs}
 
 
 def validate(
     robot: Robot,
-    states: int = 10_000,
+    subject: Source = "kernel",
+    reference: References = "pinocchio",
+    n_states: int = 10_000,
     seed: int = 0,
     sampling: str = "uniform",
-    payload: Wrench | str | None = None,
-    oracle: Oracles = "pinocchio",
+    payload: Payload = None,
     progress: Progress | None = None,
 ) -> Validation:
-    """Compare our recursion with one or several oracles on many states.
+    """Judge one program by one or several others on many states.
 
     Args:
         robot: the robot.
-        states: how many.
+        subject: the program that is judged: a name (`"kernel"`, `"recursion"`, `"pinocchio"`, `"mujoco"`,
+            `"lagrange"`), an `Implementation`, a function f(q, v, a) of one state or a batch, the path of a table of
+            results, or the command line of a program.
+        reference: what it is compared with, likewise; several in a list.
+        n_states: how many states; of a table all of its own.
         seed: of the generator; the same seed gives the same states.
         sampling: how they are drawn, one of `SAMPLINGS`.
-        payload: None; a wrench, the same in every state; or `"random"`, another in each state.
-        oracle: one of `oracles.ORACLES`, or several: all see the same states.
+        payload: None; a wrench, the same in every state; or `RandomPayload()`, another in each state.
         progress: called after each block with the number of states done.
 
     Returns:
@@ -159,49 +216,47 @@ def validate(
 
     Raises:
         InputError: an argument cannot be used.
-        OracleError: an oracle is missing, refuses the robot, or built another model than the file describes.
+        ImplementationError: a program is missing, refuses the robot, dies, or built another model than the file says.
     """
-    whole_number("states", states, 1, LAST_STATE, "10^15, since none would prove nothing")
+    whole_number("n_states", n_states, 1, LAST_STATE, "10^15, since none would prove nothing")
     start = time.perf_counter()
-    run = ComparisonRun.of(robot, seed, sampling, payload, oracle, states)
-    for part in blocks(states, BLOCK):
-        run.add(run.sampler.draw(part.start, part.stop - part.start))
+    run = Run.of(robot, subject, reference, seed, sampling, payload)
+    if run.table is not None:
+        n_states = len(run.table)
+    for part in blocks(n_states, BLOCK):
+        run.add(run.states(part.start, part.stop - part.start))
         if progress is not None:
             progress(part.stop)
-    adjudicated = [run.adjudicated(run.sampler.draw(state, 1)) for state in run.ranking.chosen()]
+    adjudications = []
+    for state in run.ranking.chosen():
+        batch = run.states(state, 1)
+        adjudications.append(run.adjudicate(batch, run.evaluate(batch)))
+    programs = (run.subject, *run.references)
     return Validation(
         robot=robot.name,
         base="floating" if robot.model.floating else "fixed",
         gravity=tuple(robot.model.gravity.tolist()),
         effects={joint.name: joint.effects for joint in robot.model.joints if joint.effects != JointEffects()},
-        against=tuple(ReferenceSummary.of(reference) for reference in run.references),
-        n_states=states,
-        sampling=sampling,
+        subject=label(run.subject),
+        references=tuple(map(ReferenceSummary.of, run.references, run.comparisons)),
+        n_states=n_states,
+        sampling=sampling if run.table is None else "table",
         seed=seed,
-        payload=in_words(payload),
-        ours=run.ours.name,
+        payload=described(payload),
+        notes=tuple(program.note for program in programs if getattr(program, "note", "")),  # type: ignore[attr-defined]
         seconds=time.perf_counter() - start,
-        versions=versions([reference.oracle for reference in run.references]),
+        versions=versions(programs),
         failing=run.ranking.failing,
-        adjudicated=tuple(one for of_state in adjudicated for one in of_state),
+        adjudications=tuple(adjudications),
     )
 
 
-def versions(oracles: Sequence[Oracle]) -> dict[str, str]:
+def versions(programs: Iterable[Implementation]) -> dict[str, str]:
     """What took part, so that a result can be had again."""
     return {
         "rttrr-pin": metadata.version("rttrr-pin"),
-        **{oracle.name: oracle.version for oracle in oracles},
+        **{program.name: program.version for program in programs if program.version},
         "numpy": np.__version__,
         "python": platform.python_version(),
         "machine": platform.machine(),
     }
-
-
-def in_words(payload: Wrench | str | None) -> str:
-    """A payload as reports name it."""
-    if isinstance(payload, Wrench):
-        axes = "base axes" if payload.expressed_in == "base" else "link axes"
-        f, n = (np.asarray(x, dtype=float).tolist() for x in (payload.force, payload.moment))
-        return f"force {f} N, moment {n} N m at {payload.link or 'the tool'}, {axes}"
-    return payload or "none"

@@ -1,4 +1,4 @@
-"""Looks for the worst case: states at which the difference is the largest share of what rounding can explain.
+"""Looks for the state at which a subject and its references differ most, in parts of what rounding can explain.
 
 Random states seldom meet the worst. Differential evolution (Storn and Price, "Differential evolution", 1997; SciPy's)
 does: it needs no derivatives, which rounding errors do not have, and takes whole populations of states at once.
@@ -8,16 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.optimize import differential_evolution
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.inputs import whole_number
-from rttrr_pin.core.wrench import Wrench
+from rttrr_pin.errors import InputError
+from rttrr_pin.implementations import Batch, label
+from rttrr_pin.implementations.registry import Source
 from rttrr_pin.robot import Robot
-from rttrr_pin.validation.comparison_run import ComparisonRun, Oracles
-from rttrr_pin.validation.states import States
+from rttrr_pin.validation.comparison import Payload, References, Run
 
 POPULATION = 256
 """States in one generation."""
@@ -28,50 +30,69 @@ FEWEST, MOST = 2 * POPULATION, 10**9
 
 @dataclass(frozen=True, slots=True)
 class WorstCase:
-    """The worst case that a search found.
+    """The worst state that a search came to.
 
     Attributes:
+        subject: name and version of the program that is judged.
+        reference: the program that it differs from there.
         quantity: tau, F, N, f or n.
         at: name of the link (of the joint for tau).
-        oracle: the program that ours differs from there.
-        share: |ours - oracle| as a share of what the gate allows.
-        random: the largest share among the random states that the search started from.
+        of_tolerance: error / tolerance.
+        random: the largest error / tolerance among the random states that the search started from.
         evaluations: how many states were looked at.
-        seed: of the search; the same seed finds the same state.
-        states: the state, a batch of one.
+        seed: of the search; the same seed comes to the same state.
+        batch: the state, a batch of one.
     """
 
+    subject: str
+    reference: str
     quantity: str
     at: str
-    oracle: str
-    share: float
+    of_tolerance: float
     random: float
     evaluations: int
     seed: int
-    states: States
+    batch: Batch
 
     @property
-    def agrees(self) -> bool:
-        """Whether even this state lies within the gate."""
-        return self.share <= 1.0
+    def passed(self) -> bool:
+        """Whether even this state lies within the tolerance."""
+        return self.of_tolerance <= 1.0
+
+    def summary(self) -> str:
+        """The verdict in one sentence."""
+        return (
+            f"{'PASS' if self.passed else 'FAIL'} {self.subject} against {self.reference}: worst of "
+            f"{self.evaluations:,} states searched, seed {self.seed}: error / tolerance {self.of_tolerance:.3f} in "
+            f"{self.quantity} at {self.at}, where random states had {self.random:.3f}"
+        )
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as data for JSON, with the state."""
+        names = ("subject", "reference", "quantity", "at", "of_tolerance", "random", "evaluations", "seed")
+        loads = [{"link": x.link, "f": x.f.reshape(3).tolist(), "n": x.n.reshape(3).tolist()} for x in self.batch.loads]
+        state = {name: getattr(self.batch, name)[0].tolist() for name in "qva"} | {"loads": loads}
+        return {"schema": 1, "passed": self.passed, **{name: getattr(self, name) for name in names}, **state}
 
 
-def search(
+def search_worst_state(
     robot: Robot,
+    subject: Source = "kernel",
+    reference: References = "pinocchio",
     evaluations: int = 20_000,
     seed: int = 0,
-    payload: Wrench | str | None = None,
-    oracle: Oracles = "pinocchio",
+    payload: Payload = None,
     progress: Callable[[int], None] = lambda done: None,
 ) -> WorstCase:
-    """Look for the state at which ours and an oracle differ most, as a share of what rounding can explain.
+    """Look for the state at which a subject and its references differ most, as error / tolerance.
 
     Args:
         robot: the robot.
+        subject: as in `validate`.
+        reference: as in `validate`; of several, the largest error / tolerance against any of them counts.
         evaluations: about how many states to look at, at least 512.
         seed: of the search.
         payload: as in `validate`; a random one is varied too.
-        oracle: one of `oracles.ORACLES`, or several: what is looked for is the largest share against any of them.
         progress: called with the number of states done.
 
     Returns:
@@ -79,30 +100,36 @@ def search(
 
     Raises:
         InputError: an argument cannot be used.
-        OracleError: as in `validate`.
+        ImplementationError: as in `validate`.
     """
     whole_number("evaluations", evaluations, FEWEST, MOST, "10^9")
-    run = ComparisonRun.of(robot, seed, "uniform", payload, oracle, evaluations)
+    run = Run.of(robot, subject, reference, seed, "uniform", payload)
+    if run.table is not None:
+        raise InputError("a table of results has its own states, and a search makes new ones: name a program")
     sampler = run.sampler
-    generations = evaluations // POPULATION - 1
     rng = np.random.default_rng(seed)
     start = rng.random((POPULATION, sampler.numbers))
     done = 0
 
+    def ratios(batch: Batch) -> Array:
+        """Error / tolerance, (rows, N)."""
+        differences = run.differences(batch, run.evaluate(batch))
+        return np.array([one.of_tolerance for of_reference in differences for one in of_reference])
+
     def closeness(columns: Array) -> Array:
         nonlocal done
         unit = np.atleast_2d(columns.T)
-        worst: Array = np.max([gap.share for gap in run.gaps(sampler.made_of(unit))], axis=0)
+        worst: Array = ratios(sampler.made_of(unit)).max(axis=0)
         done += len(unit)
         progress(min(done, evaluations))
         return -worst
 
     random = float(-closeness(start.T).min())
-    found = differential_evolution(
+    optimum = differential_evolution(
         closeness,
         [(0.0, 1.0)] * sampler.numbers,
         init=start,
-        maxiter=generations,
+        maxiter=evaluations // POPULATION - 1,
         tol=0.0,
         atol=0.0,
         polish=False,
@@ -110,8 +137,9 @@ def search(
         updating="deferred",
         rng=rng,
     )
-    state = sampler.made_of(np.atleast_2d(found.x))
-    gaps = run.gaps(state)
-    k = int(np.argmax([gap.share[0] for gap in gaps]))
-    reference, row = run.rows[k]
-    return WorstCase(row.quantity, row.at, reference.oracle.name, float(gaps[k].share[0]), random, done, seed, state)
+    batch = sampler.made_of(np.atleast_2d(optimum.x))
+    reached = ratios(batch)[:, 0]
+    worst = int(np.argmax(reached))
+    program, row = run.rows[worst]
+    names = label(run.subject), label(program), row.quantity, row.at
+    return WorstCase(*names, float(reached[worst]), random, done, seed, batch)

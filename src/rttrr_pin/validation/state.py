@@ -1,129 +1,176 @@
-"""One state in full: ours beside each oracle's."""
+"""One state in full: the subject beside each reference."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 from rttrr_pin.core.inputs import whole_number
-from rttrr_pin.core.wrench import LinkWrenches, Wrench
 from rttrr_pin.exact import Adjudication
+from rttrr_pin.implementations import Batch, Evaluation, label
+from rttrr_pin.implementations.registry import Source
 from rttrr_pin.robot import Robot
-from rttrr_pin.validation.compare import Gap, Row
-from rttrr_pin.validation.comparison_run import ComparisonRun, Oracles
-from rttrr_pin.validation.states import LAST_STATE, States
+from rttrr_pin.validation.compare import Difference, Row
+from rttrr_pin.validation.comparison import Payload, References, Run
+from rttrr_pin.validation.run import TOLERANCE, adjudication_dict
+from rttrr_pin.validation.states import LAST_STATE
 
 
 @dataclass(frozen=True, slots=True)
 class StateComparison:
-    """What one oracle says of the state.
+    """What one reference says of the state.
 
     Attributes:
-        oracle: name and version of the other program.
-        theirs: its result, a batch of one.
-        rows: labels of the gaps.
-        gaps: how far apart, one for each row.
-        adjudicated: who is right, by balls.
+        reference: name and version of the program.
+        result: what it gave, a batch of one.
+        rows: quantity, place and unit of each difference.
+        differences: how far apart, one for each row.
     """
 
-    oracle: str
-    theirs: LinkWrenches
+    reference: str
+    result: Evaluation
     rows: tuple[Row, ...]
-    gaps: tuple[Gap, ...]
-    adjudicated: Adjudication
+    differences: tuple[Difference, ...]
 
     @property
-    def agrees(self) -> bool:
-        """Whether every row lies within the gate."""
-        return all(bool(gap.share[0] <= 1.0) for gap in self.gaps)
+    def passed(self) -> bool:
+        """Whether every row lies within the tolerance."""
+        return all(bool(difference.of_tolerance[0] <= 1.0) for difference in self.differences)
 
 
 @dataclass(frozen=True, slots=True)
 class StateReport:
-    """One state in full: ours beside the oracles'.
-
-    `oracle`, `theirs`, `rows`, `gaps` and `settled` are those of the first oracle.
+    """One state in full.
 
     Attributes:
         robot: its name.
         index: which state.
         q_names: names of the coordinates.
         v_names: names of the rates and driving forces.
-        states: q, v, a and payload, batches of one.
-        ours: our result, a batch of one.
-        bound: the bound on our rounding.
-        views: what each oracle says of it.
+        links: names of the links.
+        batch: q, v, a and payload, a batch of one.
+        subject: name and version of the program that is judged.
+        result: what it gave, a batch of one.
+        comparisons: what each reference says of the state.
+        adjudication: who is right, by the exact reference.
     """
 
     robot: str
     index: int
     q_names: tuple[str, ...]
     v_names: tuple[str, ...]
-    states: States
-    ours: LinkWrenches
-    bound: LinkWrenches
-    views: tuple[StateComparison, ...]
+    links: tuple[str, ...]
+    batch: Batch
+    subject: str
+    result: Evaluation
+    comparisons: tuple[StateComparison, ...]
+    adjudication: Adjudication
 
     @property
-    def agrees(self) -> bool:
-        """Whether every row of every oracle lies within the gate."""
-        return all(view.agrees for view in self.views)
+    def passed(self) -> bool:
+        """Whether every row of every reference lies within the tolerance."""
+        return all(one.passed for one in self.comparisons)
 
-    @property
-    def oracle(self) -> str:
-        """Name and version of the first oracle."""
-        return self.views[0].oracle
+    def summary(self) -> str:
+        """The verdict in one sentence."""
+        verdict = "PASS" if self.passed else "FAIL"
+        others = ", ".join(one.reference for one in self.comparisons)
+        return f"{verdict} {self.subject} against {others} at state {self.index} of {self.robot}"
 
-    @property
-    def theirs(self) -> LinkWrenches:
-        """The result of the first oracle, a batch of one."""
-        return self.views[0].theirs
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as data for JSON."""
+        return {
+            "schema": 1,
+            "passed": self.passed,
+            "robot": self.robot,
+            "state": self.index,
+            "q_names": self.q_names,
+            "v_names": self.v_names,
+            "links": self.links,
+            **{name: getattr(self.batch, name)[0].tolist() for name in "qva"},
+            "payload": [
+                {
+                    "link": self.links[load.link],
+                    "force": load.f.ravel().tolist(),
+                    "moment": load.n.ravel().tolist(),
+                    "expressed_in": "base" if load.in_base else "link",
+                }
+                for load in self.batch.loads
+            ],
+            "subject": self.subject,
+            "values": {key: x[0].tolist() for key, x in self.result.values.items()},
+            "tolerance": TOLERANCE,
+            "references": [_comparison_dict(one) for one in self.comparisons],
+            "adjudication": adjudication_dict(self.adjudication),
+        }
 
-    @property
-    def rows(self) -> tuple[Row, ...]:
-        """Labels of the gaps to the first oracle."""
-        return self.views[0].rows
 
-    @property
-    def gaps(self) -> tuple[Gap, ...]:
-        """How far apart ours and the first oracle are, one for each row."""
-        return self.views[0].gaps
-
-    @property
-    def adjudicated(self) -> Adjudication:
-        """Who is right, ours or the first oracle, by balls."""
-        return self.views[0].adjudicated
+def _comparison_dict(comparison: StateComparison) -> dict[str, Any]:
+    pairs = zip(comparison.rows, comparison.differences, strict=True)
+    return {
+        "reference": comparison.reference,
+        "passed": comparison.passed,
+        "values": {key: x[0].tolist() for key, x in comparison.result.values.items()},
+        "differences": [
+            {
+                "quantity": row.quantity,
+                "at": row.at,
+                "unit": row.unit,
+                "error": float(one.error[0]),
+                "relative_eps": float(one.relative[0]),
+                "of_tolerance": float(one.of_tolerance[0]),
+            }
+            for row, one in pairs
+        ],
+    }
 
 
 def compare_state(
     robot: Robot,
     index: int,
+    subject: Source = "kernel",
+    reference: References = "pinocchio",
     seed: int = 0,
     sampling: str = "uniform",
-    payload: Wrench | str | None = None,
-    oracle: Oracles = "pinocchio",
-    states: int = 10_000,
+    payload: Payload = None,
 ) -> StateReport:
-    """One of the states that `validate` draws for the same seed, family, payload and number of states, in full.
+    """One of the states that `validate` compares for the same subject, references, seed, sampling and payload.
+
+    Args:
+        robot: the robot.
+        index: which state; of a table its row, counted from 0.
+        subject: as in `validate`.
+        reference: as in `validate`.
+        seed: of the generator.
+        sampling: how states are drawn.
+        payload: as in `validate`.
 
     Raises:
         InputError: an argument cannot be used.
-        OracleError: as in `validate`.
+        ImplementationError: as in `validate`.
     """
     whole_number("state", index, 0, LAST_STATE, "10^15")
-    run = ComparisonRun.of(robot, seed, sampling, payload, oracle, states)
-    drawn = run.sampler.draw(index, 1)
-    sides = run.sides(drawn)
-    views = [
-        StateComparison(
-            reference.label,
-            theirs.wrenches,
-            tuple(reference.comparison.rows),
-            tuple(reference.comparison.gaps(sides.ours, theirs, sides.bound)),
-            adjudicated,
+    run = Run.of(robot, subject, reference, seed, sampling, payload)
+    if run.table is not None:
+        whole_number("state", index, 0, len(run.table) - 1)
+    batch = run.states(index, 1)
+    results = run.evaluate(batch)
+    comparisons = tuple(
+        StateComparison(label(program), result, tuple(comparison.rows), tuple(differences))
+        for program, result, comparison, differences in zip(
+            run.references, results[1:], run.comparisons, run.differences(batch, results), strict=True
         )
-        for reference, theirs, adjudicated in zip(
-            run.references, sides.theirs, run.adjudicate_results(drawn, sides), strict=True
-        )
-    ]
-    names = robot.model.q_names, robot.model.v_names
-    return StateReport(robot.name, index, *names, drawn, sides.ours, sides.bound, tuple(views))
+    )
+    model = robot.model
+    return StateReport(
+        robot=robot.name,
+        index=index,
+        q_names=model.q_names,
+        v_names=model.v_names,
+        links=model.link_names,
+        batch=batch,
+        subject=label(run.subject),
+        result=results[0],
+        comparisons=comparisons,
+        adjudication=run.adjudicate(batch, results),
+    )

@@ -17,8 +17,9 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.inputs import whole_number
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.model import Model
-from rttrr_pin.core.payload import Load
+from rttrr_pin.core.payload import Load, RandomPayload
 from rttrr_pin.errors import UnknownNameError
+from rttrr_pin.implementations.protocol import Batch
 
 Indices = NDArray[np.int64]
 
@@ -34,34 +35,12 @@ DEFAULT_RATE = {"rad": math.pi, "m": 1.0}
 DEFAULT_ACCELERATION = {"rad": 10.0, "m": 10.0}
 """Largest acceleration, per second squared; URDF has no limit for it."""
 
-PAYLOAD_RANGE = (50.0, 10.0)
-"""Half ranges of each component of a random payload: force [N], moment [N m]."""
-
 LARGE_VELOCITY = 100.0
 """Times the velocity limit: velocity terms then rule, as gravity does at rest."""
 
 
 LAST_STATE = 10**15
 """More than anyone can compute, and far below what an index holds."""
-
-
-@dataclass(frozen=True, slots=True)
-class States:
-    """Some states in a row.
-
-    Attributes:
-        first: index of the first one.
-        q: coordinates, (N, nv) [rad or m].
-        v: rates, (N, nv).
-        a: accelerations, (N, nv).
-        loads: payloads.
-    """
-
-    first: int
-    q: Array
-    v: Array
-    a: Array
-    loads: tuple[Load, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -157,7 +136,7 @@ class Sampler:
     """
 
     def __init__(
-        self, model: Model, sampling: str = "uniform", seed: int = 0, payload: Load | str | None = None
+        self, model: Model, sampling: str = "uniform", seed: int = 0, payload: Load | RandomPayload | None = None
     ) -> None:
         """Prepare to draw.
 
@@ -165,20 +144,21 @@ class Sampler:
             model: the robot.
             sampling: one of `SAMPLINGS`.
             seed: from 0 to 2^128 - 1.
-            payload: the same load in every state; or the name of a link, which gets a random one, in its own axes.
+            payload: the same load in every state; or a random one at the link that it names, in its axes.
 
         Raises:
-            UnknownNameError: there is no such family or link.
+            UnknownNameError: there is no such sampling or link.
             InputError: the seed is out of range.
         """
         if not isinstance(sampling, str) or sampling not in SAMPLINGS:
-            raise UnknownNameError("family of states", sampling, SAMPLINGS)
+            raise UnknownNameError("sampling", sampling, SAMPLINGS)
         seed = whole_number("seed", seed, 0, 2**128 - 1, "2^128 - 1")
         self.model, self.sampling, self.seed = model, sampling, seed
-        self._payload = payload if not isinstance(payload, str) else model.link_index(payload)
+        self._payload = payload
+        self._link = model.link_index(payload.link) if isinstance(payload, RandomPayload) and payload.link else -1
         self._ranges = Ranges.of(model)
 
-    def draw(self, first: int, count: int) -> States:
+    def draw(self, first: int, count: int) -> Batch:
         """The states first, first + 1, ..., first + count - 1."""
         whole_number("state", first, 0, LAST_STATE, "10^15")
         counters = -(-self.numbers // PER_COUNTER)
@@ -190,12 +170,13 @@ class Sampler:
         """How many numbers make a state, payload included whether it is used or not."""
         return 3 * self.model.nv + 6
 
-    def made_of(self, unit: Array, first: int = 0) -> States:
+    def made_of(self, unit: Array, first: int = 0) -> Batch:
         """The states that numbers in [0, 1] stand for, (N, `numbers`) or wider, counted from `first`."""
         nv = self.model.nv
         k = first + np.arange(len(unit), dtype=np.int64)
         q, v, a = SAMPLINGS[self.sampling](unit[:, : 3 * nv], k, self._ranges)
-        return States(first, self._coordinates(q), v, a, self._loads(2 * unit[:, 3 * nv : 3 * nv + 6] - 1))
+        loads = self._loads(2 * unit[:, 3 * nv : 3 * nv + 6] - 1)
+        return Batch(self.model, self._coordinates(q), v, a, loads, first)
 
     def _coordinates(self, q: Array) -> Array:
         """One number for each degree of freedom as the joints' coordinates."""
@@ -210,8 +191,7 @@ class Sampler:
             return ()
         if isinstance(self._payload, Load):
             return (self._payload,)
-        force, moment = PAYLOAD_RANGE
-        return (Load(self._payload, unit[:, :3] * force, unit[:, 3:] * moment),)
+        return (Load(self._link, unit[:, :3] * self._payload.force, unit[:, 3:] * self._payload.moment),)
 
 
 def _range(joint: Joint, unit: str) -> tuple[float, float]:

@@ -1,0 +1,150 @@
+"""How far rounding can take a result from the true one.
+
+Three rules, from most to least that is known of a program:
+
+- A program whose own operations are bounded (`recursion`, `kernel`, `lagrange`) has that bound.
+- A library whose formulas are known adds up the recursion's terms in another order and in other axes. It gets the
+  recursion's bound for the whole vector x that a quantity belongs to, since in other axes an error of one component is
+  an error of all; 4 eps |x| for what is rounded on its way into the library; and its own terms that cancel.
+- A program of which nothing is known gets the sizes of all terms that add up to the quantity, in any formulation: in
+  absolute values, outwards for velocities and accelerations, inwards for forces and moments, with some eps at each
+  level of the tree.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.model import Model
+from rttrr_pin.core.scalars import EPS
+from rttrr_pin.core.wrench import LINK_QUANTITIES, LinkWrenches
+from rttrr_pin.implementations.joint_maps import own_slices
+from rttrr_pin.implementations.protocol import Batch
+
+HANDOVER = 4 * EPS
+"""Relative: payloads, placements and angles are rounded on their way into another program's conventions."""
+
+OPERATIONS = 8
+"""Roundings of each term at each level of the tree: a change of frame, a vector product, sums."""
+
+Carrier = tuple[float, str, int]
+"""Weight, quantity (f or n) and link of a vector that a driving force is a component of."""
+
+
+def norm(vectors: Array) -> Array:
+    """The Euclidean norm of the last axis."""
+    lengths: Array = np.linalg.norm(vectors, axis=-1)
+    return lengths
+
+
+def carriers(model: Model) -> list[list[Carrier]]:
+    """For each degree of freedom the vectors that its driving force is made of: its own, and those of followers."""
+    found: dict[int, list[list[Carrier]]] = {
+        i: [[(1.0, "n" if rotates else "f", i)] for rotates in model.joints[i].type.rotations]
+        for i in model.independent
+    }
+    for i, joint in enumerate(model.joints):
+        if joint.mimic is not None:
+            weight = abs(joint.mimic.multiplier)
+            found[joint.mimic.joint][0].append((weight, "n" if joint.type.rotations[0] else "f", i))
+    return [freedom for i in model.independent for freedom in found[i]]
+
+
+def of_bounds(bounds: LinkWrenches) -> dict[str, Array]:
+    """The allowance of a program whose every number has a bound."""
+    return {"tau": np.abs(bounds.tau)} | {key: norm(getattr(bounds, key)) for key in LINK_QUANTITIES}
+
+
+def of_library(
+    batch: Batch, values: Mapping[str, Array], own: Array, cancelling: Mapping[str, Array]
+) -> dict[str, Array]:
+    """The allowance of a library: the recursion's bound of the whole vector, handing over, and terms that cancel.
+
+    Args:
+        batch: the states.
+        values: what the library gave: tau, F, N, f, n.
+        own: tau_joint, (N, nv).
+        cancelling: by quantity (F, N, f, n), (N, links): the rounding of terms that only the library's formulas have.
+    """
+    wide = {
+        key: norm(getattr(batch.bounds, key)) + np.abs(cancelling[key]) + HANDOVER * _finite(norm(values[key]))
+        for key in LINK_QUANTITIES
+    }
+    return {"tau": _of_carriers(batch.model, wide) + HANDOVER * np.abs(own)} | wide
+
+
+def default_allowance(batch: Batch) -> dict[str, Array]:
+    """The allowance of a program of which nothing is known: eps for all terms, at each level of the tree."""
+    model = batch.model
+    levels = np.zeros(len(model.links))
+    for i, joint in enumerate(model.joints):
+        levels[i] = 1 + (levels[joint.parent] if joint.parent >= 0 else 0)
+    each = OPERATIONS * EPS * (1 + levels.max(initial=0.0))
+    wide = {key: each * size for key, size in sizes(batch).items()}
+    own = np.abs(batch.recursion[0].tau_joint)
+    return {"tau": _of_carriers(model, wide) + HANDOVER * own} | wide
+
+
+def sizes(batch: Batch) -> dict[str, Array]:
+    """F, N, f, n as the sum of the absolute values of all terms, linear velocities included, (N, links) each.
+
+    With sizes w, v, w_dot, a of a link's velocities and accelerations, and reach the distance between two origins:
+
+        F = m (a + c (w_dot + w^2)),   N = |I| (w_dot + w^2)
+        f = F + sum f_child,           n = N + c F + m v^2 + sum (n_child + reach f_child)
+    """
+    model, rows = batch.model, len(batch)
+    shape = (rows, len(model.links))
+    w, v, w_dot, a, reach = (np.zeros(shape) for _ in range(5))
+    gravity = np.full(rows, float(np.linalg.norm(model.gravity)))
+    still = np.zeros(rows)
+    for i, (joint, (at_q, at_v)) in enumerate(zip(model.joints, own_slices(model), strict=True)):
+        p = joint.parent
+        scale = 1.0 if joint.mimic is None else abs(joint.mimic.multiplier)
+        offset = 0.0 if joint.mimic is None else abs(joint.mimic.offset)
+        angular = np.array(joint.type.rotations, dtype=bool)
+        turn, slide = (scale * norm(batch.v[:, at_v][:, which]) for which in (angular, ~angular))
+        turn_dot, slide_dot = (scale * norm(batch.a[:, at_v][:, which]) for which in (angular, ~angular))
+        moved = scale * norm(batch.q[:, at_q][:, : int((~angular).sum())]) + (offset if not angular.all() else 0.0)
+        reach[:, i] = float(np.linalg.norm(joint.p)) + (moved if (~angular).any() else 0.0)
+        w_p, v_p, w_dot_p, a_p = (
+            x[:, p] if p >= 0 else start
+            for x, start in zip((w, v, w_dot, a), (still, still, still, gravity), strict=True)
+        )
+        w[:, i] = w_p + turn
+        v[:, i] = v_p + reach[:, i] * w_p + slide
+        w_dot[:, i] = w_dot_p + w_p * turn + turn_dot
+        a[:, i] = a_p + reach[:, i] * (w_dot_p + w_p**2) + 2 * (w_p + turn) * slide + slide_dot + w[:, i] * v[:, i]
+    turning = w_dot + w**2
+    mass = np.array([abs(link.mass) for link in model.links])
+    lever = np.array([np.linalg.norm(link.com) for link in model.links])
+    tensor = np.array([np.linalg.norm(link.inertia) for link in model.links])
+    F = mass * (a + lever * turning)
+    N = tensor * turning + mass * lever * (a + lever * turning)
+    f, n = F.copy(), N + mass * v**2
+    for load in batch.loads:
+        f[:, load.link] += norm(np.atleast_2d(load.f))
+        n[:, load.link] += norm(np.atleast_2d(load.n))
+    for i in reversed(range(len(model.links))):
+        p = model.joints[i].parent
+        if p >= 0:
+            f[:, p] += f[:, i]
+            n[:, p] += n[:, i] + reach[:, i] * f[:, i]
+    return {"F": F, "N": N, "f": f, "n": n}
+
+
+def _of_carriers(model: Model, wide: Mapping[str, Array]) -> Array:
+    """What the vectors that driving forces are components of are allowed, (N, nv)."""
+    rows = len(wide["f"])
+    columns = [
+        sum((weight * wide[key][:, link] for weight, key, link in parts), np.zeros(rows)) for parts in carriers(model)
+    ]
+    return np.stack(columns, axis=1) if columns else np.zeros((rows, 0))
+
+
+def _finite(sizes: Array) -> Array:
+    """What is not finite must not widen the tolerance of what else is compared with it."""
+    return np.where(np.isfinite(sizes), sizes, 0.0)

@@ -1,0 +1,97 @@
+"""What computes inverse dynamics, whoever wrote it: states in, values and their rounding out."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Protocol, runtime_checkable
+
+import numpy as np
+
+from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.model import Model
+from rttrr_pin.core.payload import Load
+from rttrr_pin.core.wrench import LinkWrenches
+from rttrr_pin.exact.rounding import bounded_dynamics
+from rttrr_pin.implementations.bounds import compiled_bounds
+
+
+@dataclass(frozen=True)
+class Batch:
+    """States of one robot.
+
+    Attributes:
+        model: the robot.
+        q: coordinates, (N, nq) [rad or m].
+        v: rates, (N, nv).
+        a: accelerations, (N, nv).
+        loads: payloads.
+        first: index of the first state, for messages.
+    """
+
+    model: Model
+    q: Array
+    v: Array
+    a: Array
+    loads: tuple[Load, ...] = ()
+    first: int = 0
+
+    def __len__(self) -> int:
+        return len(self.q)
+
+    @cached_property
+    def recursion(self) -> tuple[LinkWrenches, LinkWrenches]:
+        """The reference recursion in floats, and a running error bound on each of its numbers."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            return bounded_dynamics(self.model, self.q, self.v, self.a, self.loads)
+
+    @cached_property
+    def bounds(self) -> LinkWrenches:
+        """A running error bound for the formulas of the recursion: compiled for small robots, else from `recursion`."""
+        compiled = compiled_bounds(self.model, self.q, self.v, self.a, self.loads)
+        return self.recursion[1] if compiled is None else compiled
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """What an implementation says of a batch.
+
+    Attributes:
+        values: by quantity, in the frames and signs of docs/notation.md: tau (N, nv); F, N, f, n (N, links, 3). What is
+            not finite is a deviation like any other.
+        allowance: by quantity, at most how far rounding takes the Euclidean norm of each vector from the true one, tau
+            (N, nv), others (N, links); None where the author knows no bound, which takes `default_allowance`.
+        tau_joint: the part of tau that the joints take themselves (N, nv); None where it is not known apart.
+    """
+
+    values: Mapping[str, Array]
+    allowance: Mapping[str, Array] | None = None
+    tau_joint: Array | None = None
+
+
+@runtime_checkable
+class Implementation(Protocol):
+    """A program that computes inverse dynamics.
+
+    Attributes:
+        name: what it is called in reports.
+        version: of the program or library; empty where it has none.
+        quantities: which of tau, F, N, f, n it gives, in this order.
+    """
+
+    @property
+    def name(self) -> str: ...  # noqa: D102
+    @property
+    def version(self) -> str: ...  # noqa: D102
+    @property
+    def quantities(self) -> tuple[str, ...]: ...  # noqa: D102
+
+    def evaluate(self, batch: Batch) -> Evaluation:
+        """The quantities that it gives, at each state of a batch."""
+        ...
+
+
+def label(implementation: Implementation) -> str:
+    """Name and version, as reports have them."""
+    return f"{implementation.name} {implementation.version}".rstrip()
