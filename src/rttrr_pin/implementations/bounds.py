@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from functools import lru_cache
 
-from rttrr_pin.compile import Kernel
+from rttrr_pin.compile.kernel import Kernel
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
@@ -19,9 +19,9 @@ LARGEST = 16
 
 
 @lru_cache(maxsize=8)
-def kernel_of(model: Model, outputs: tuple[str, ...]) -> Kernel:
+def kernel_of(model: Model, outputs: tuple[str, ...]) -> Kernel[dict[str, Array]]:
     """The last few compiled programs."""
-    return Kernel(model, outputs, list)
+    return Kernel(model, outputs)
 
 
 def compiled_bounds(model: Model, q: Array, v: Array, a: Array, loads: Sequence[Load] = ()) -> LinkWrenches | None:
