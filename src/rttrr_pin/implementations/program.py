@@ -1,0 +1,295 @@
+"""A program of the user's as an implementation: states as JSON lines on its stdin, results as JSON lines on its stdout.
+
+The format stands in docs/notation.md. The program runs as long as it is asked, and is ended in any case: by the end of
+its input, and by a signal where it does not leave by itself.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+import select
+import shlex
+import subprocess
+import time
+import tty
+import weakref
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
+
+import numpy as np
+
+from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.batch import split_columns
+from rttrr_pin.core.model import Model
+from rttrr_pin.core.wrench import QUANTITIES
+from rttrr_pin.errors import ImplementationError, shortened
+from rttrr_pin.implementations.allowance import default_allowance, norm
+from rttrr_pin.implementations.protocol import Batch, Evaluation
+from rttrr_pin.implementations.text_results import (
+    Digits,
+    blocks_of,
+    flattened,
+    json_of,
+    number,
+    quantities_of,
+    trial_states,
+)
+
+START = 6
+"""Times the limit for a state: how long the first reply may take, in which a program loads its libraries."""
+
+LONGEST_REPLY = 1_000_000
+"""Bytes of one reply; thousands of links need fewer."""
+
+TAIL = 2000
+"""Characters of stderr that an error shows."""
+
+PATIENCE = 0.5
+"""Seconds that a program has to leave once its input has ended."""
+
+
+class Program:
+    """A command that answers each state with a line.
+
+    Attributes:
+        name: the command.
+        version: empty.
+        quantities: those of tau, F, N, f, n that it replied with when it was tried.
+        digits: the significant digits that it is judged at; None where it prints all that float64 has.
+        note: the same as a sentence; empty where all digits are there.
+    """
+
+    version = ""
+
+    def __init__(self, command: str | Sequence[str], model: Model, seconds: float = 10.0) -> None:
+        """Start the program, and try it on three states.
+
+        Args:
+            command: as a shell would split it, though none runs; or the words.
+            model: the robot.
+            seconds: how long it may take for a state.
+
+        Raises:
+            ImplementationError: it cannot be started, dies, hangs, or replies with what is no result.
+        """
+        try:
+            self.words = shlex.split(command) if isinstance(command, str) else list(command)
+        except ValueError as error:
+            raise ImplementationError(f"{command!r} is no command: {error}") from None
+        self.name = shortened(shlex.join(self.words))
+        self.model, self.seconds = model, seconds
+        self._child: _Child | None = None
+        self._blocks = blocks_of(model)
+        self.quantities: tuple[str, ...] = ()
+        trial = Batch(model, *trial_states(model))
+        texts = self._replies(trial)
+        self.quantities = tuple(key for key in QUANTITIES if key in texts[0])
+        self._digits = {key: Digits.of(text for reply in texts for text in reply[key]) for key in self.quantities}
+        rounded = [digits.significant for digits in self._digits.values() if not digits.full]
+        self.digits = min(rounded, default=None)
+        self.note = f"{self.name} is judged at {self.digits} digits, as it prints them" if rounded else ""
+
+    def evaluate(self, batch: Batch) -> Evaluation:
+        """What the program replies, state by state.
+
+        Raises:
+            ImplementationError: it dies, hangs, or replies with what is no result; with the end of its stderr.
+        """
+        replies = self._replies(batch)
+        texts = {key: [text for reply in replies for text in reply[key]] for key in self.quantities}
+        arrays = {key: np.array([number(text) for text in column]) for key, column in texts.items()}
+        values, halves = self._shaped(arrays, batch), self._shaped(self._half_units(texts, arrays), batch)
+        allowed = default_allowance(batch)
+        return Evaluation(
+            values, {key: allowed[key] + (half if key == "tau" else norm(half)) for key, half in halves.items()}
+        )
+
+    def _half_units(self, texts: dict[str, list[str]], arrays: dict[str, Array]) -> dict[str, Array]:
+        return {key: self._digits[key].with_all(Digits.of(texts[key])).half_units(x) for key, x in arrays.items()}
+
+    def _shaped(self, arrays: dict[str, Array], batch: Batch) -> dict[str, Array]:
+        numbers = np.concatenate([arrays[key].reshape(len(batch), -1) for key in self.quantities], axis=1)
+        return split_columns(self.model, numbers, self.quantities)
+
+    def _replies(self, batch: Batch) -> list[dict[str, list[str]]]:
+        """For each state the texts of the numbers by quantity; the program is ended where one cannot be had."""
+        replies = []
+        try:
+            start = self.seconds * (START if self._child is None else 1)
+            if self._child is None:
+                self._child = _Child(self.words)
+                weakref.finalize(self, self._child.leave)
+            for line in self._child.ask([_request(batch, k) for k in range(len(batch))], self.seconds, start):
+                replies.append(self._results(line, f"{self.name}, state {batch.first + len(replies)}"))
+        except BaseException as error:
+            child, self._child = self._child, None
+            last_words = child.end() if child is not None else ""
+            if not isinstance(error, (_ReplyError, ImplementationError)):
+                raise
+            at = "" if not self.quantities else f" at state {batch.first + len(replies)}"
+            message = f"{self.name} {error}{at}" if isinstance(error, _ReplyError) else str(error)
+            raise ImplementationError(message + (f"\nits stderr ends:\n{last_words}" if last_words else "")) from None
+        return replies
+
+    def _results(self, line: str, where: str) -> dict[str, list[str]]:
+        try:
+            reply = json_of(line)
+        except ValueError as error:
+            raise _ReplyError(f"wrote what is no reply: {error}; it may write anything else to stderr") from None
+        if isinstance(reply, dict) and "error" in reply:
+            raise _ReplyError(f"replied with an error: {shortened(str(reply['error']))}")
+        parts = quantities_of(reply, self.name)
+        if self.quantities and set(parts) != set(self.quantities):
+            raise _ReplyError(f"replied with {', '.join(parts)}, and with {', '.join(self.quantities)} before")
+        return {key: flattened(value, self._blocks[key], f"{where}: {key}") for key, value in parts.items()}
+
+
+class _ReplyError(Exception):
+    """No result was had of a program; the message continues a sentence that begins with its name."""
+
+
+class _Child:
+    """A running program: lines to it and from it, each with a limit of time."""
+
+    def __init__(self, words: Sequence[str]) -> None:
+        # A terminal instead of a pipe: most languages then write each line at once, without being told to flush.
+        self._output, terminal = os.openpty()
+        try:
+            tty.setraw(terminal)
+            self._process = subprocess.Popen(
+                words, stdin=subprocess.PIPE, stdout=terminal, stderr=subprocess.PIPE, bufsize=0, start_new_session=True
+            )
+        except (OSError, ValueError, IndexError) as error:
+            os.close(self._output)
+            raise _ReplyError(f"cannot be started: {getattr(error, 'strerror', None) or error}") from None
+        finally:
+            os.close(terminal)
+        assert self._process.stdin is not None
+        assert self._process.stderr is not None
+        self._stdin, self._stderr = self._process.stdin, self._process.stderr
+        os.set_blocking(self._stdin.fileno(), False)
+        os.set_blocking(self._stderr.fileno(), False)
+        self._unsent, self._received, self._tail = b"", b"", b""
+
+    def ask(self, requests: Sequence[bytes], seconds: float, start: float) -> Iterator[str]:
+        """A line for each line, which are all written as fast as the program reads.
+
+        Args:
+            requests: lines.
+            seconds: limit for each reply from the one before.
+            start: limit for the first.
+
+        Raises:
+            _ReplyError: a reply did not come in time, or too much came, or the program has ended.
+        """
+        self._unsent = b"".join(requests)
+        for k in range(len(requests)):
+            yield self._line(start if k == 0 else seconds)
+        if self._unsent or self._received.strip():
+            raise _ReplyError(f"wrote more lines than it has read states: {_shown(self._received)}")
+
+    def _line(self, seconds: float) -> str:
+        deadline = time.monotonic() + seconds
+        while True:
+            line, end, after = self._received.partition(b"\n")
+            if end:
+                self._received = after
+                if line.strip():
+                    return line.decode(errors="replace")
+            elif len(self._received) > LONGEST_REPLY:
+                raise _ReplyError(f"wrote more than {LONGEST_REPLY:,} bytes for a state: {_shown(self._received)}")
+            elif not self._exchange(deadline - time.monotonic()):
+                raise _ReplyError(
+                    f"did not reply within {seconds:g} s: it must write a line for each state, and flush it"
+                )
+
+    def _exchange(self, seconds: float) -> bool:
+        """Wait until something can be written or read, and do it; whether that was so in time."""
+        if seconds <= 0:
+            return False
+        waiting = select.poll()
+        waiting.register(self._output, select.POLLIN)
+        if not self._stderr.closed:
+            waiting.register(self._stderr, select.POLLIN)
+        if self._unsent:
+            waiting.register(self._stdin, select.POLLOUT)
+        ready = {descriptor for descriptor, _ in waiting.poll(math.ceil(1000 * seconds))}
+        if not self._stderr.closed and self._stderr.fileno() in ready:
+            self._read_stderr()
+        if self._unsent and self._stdin.fileno() in ready:
+            try:
+                self._unsent = self._unsent[os.write(self._stdin.fileno(), self._unsent) :]
+            except BrokenPipeError:  # it reads no more, and may have replied all the same
+                self._unsent = b""
+        if self._output in ready:
+            received = b""
+            with suppress(OSError):  # Linux's word for the end of a terminal
+                received = os.read(self._output, 65536)
+            if not received:
+                raise _ReplyError(self._ended())
+            self._received += received
+        return bool(ready)
+
+    def _read_stderr(self) -> None:
+        text = self._stderr.read(65536)
+        if text == b"":
+            self._stderr.close()
+        elif text:
+            self._tail = (self._tail + text)[-TAIL:]
+
+    def _ended(self) -> str:
+        """How the program ended, as the rest of a sentence."""
+        try:
+            code = self._process.wait(PATIENCE)
+        except subprocess.TimeoutExpired:
+            return "closed its output"
+        return f"was ended by signal {-code}" if code < 0 else f"ended with exit code {code}"
+
+    def leave(self) -> None:
+        """Close its input, and end it if it does not leave."""
+        if self._output < 0:
+            return
+        with suppress(OSError):
+            self._stdin.close()
+        with suppress(subprocess.TimeoutExpired):
+            self._process.wait(PATIENCE)
+        self.end()
+
+    def end(self) -> str:
+        """End it, with all that it has started; the end of its stderr."""
+        if self._output < 0:
+            return ""
+        with suppress(ProcessLookupError, PermissionError):
+            os.killpg(self._process.pid, 9)
+        self._process.wait()
+        with suppress(OSError):
+            self._stdin.close()
+        if not self._stderr.closed:
+            self._read_stderr()
+            self._stderr.close()
+        os.close(self._output)
+        self._output = -1
+        return self._tail.decode(errors="replace").strip()
+
+
+def _request(batch: Batch, k: int) -> bytes:
+    """The line for one state."""
+    state: dict[str, object] = {key: getattr(batch, key)[k].tolist() for key in ("q", "v", "a")}
+    if batch.loads:
+        state["payload"] = [
+            {
+                "link": batch.model.link_names[load.link],
+                "f": (load.f if load.f.ndim == 1 else load.f[k]).tolist(),
+                "n": (load.n if load.n.ndim == 1 else load.n[k]).tolist(),
+                "axes": "base" if load.in_base else "link",
+            }
+            for load in batch.loads
+        ]
+    return json.dumps(state).encode() + b"\n"
+
+
+def _shown(received: bytes) -> str:
+    """The beginning of what was received."""
+    return repr(received[:80].decode(errors="replace"))

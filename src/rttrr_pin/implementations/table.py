@@ -1,0 +1,288 @@
+"""A table of states and results as an implementation: CSV, Parquet, or JSON lines, with its own states.
+
+Columns are those of docs/notation.md: q_<joint>, v_<joint>, a_<joint>; tau_<joint>; F_<link>_x, ..., n_<link>_z.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.batch import split_columns
+from rttrr_pin.core.inputs import coordinates
+from rttrr_pin.core.model import Model
+from rttrr_pin.core.wrench import QUANTITIES
+from rttrr_pin.errors import ImplementationError, InputError, RttrrError, UnknownNameError, shortened
+from rttrr_pin.implementations.allowance import default_allowance, norm
+from rttrr_pin.implementations.bounds import kernel_of
+from rttrr_pin.implementations.protocol import Batch, Evaluation
+from rttrr_pin.implementations.text_results import Digits, blocks_of, column_names, flattened, json_of, number
+
+STATE = ("q", "v", "a")
+
+Texts: TypeAlias = dict[str, list[str]]
+"""By column, one text for each row."""
+
+Columns: TypeAlias = Mapping[str, "list[str] | np.ndarray[Any, Any]"]
+"""By column, texts, or numbers of a binary file."""
+
+
+class Table:
+    """Results that somebody computed and wrote down.
+
+    Its allowance is the default one, and half a unit in the last place that its numbers were printed to. Where states
+    and results were printed alike, to fewer digits than float64 has, the program that wrote them knew the states to
+    more digits than the table: what half a unit of each coordinate changes is then allowed too.
+
+    Attributes:
+        name: the file's.
+        version: empty.
+        quantities: those of tau, F, N, f, n that it has columns of.
+        digits: the significant digits that it is judged at; None where it was printed to all that float64 has.
+        note: the same as a sentence; empty where all digits are there.
+    """
+
+    version = ""
+
+    def __init__(self, path: Path, model: Model) -> None:
+        """Read the file.
+
+        Raises:
+            InputError: it cannot be read, or a column, a row or a number cannot be used.
+            UnknownNameError: a column is of a joint or link that the robot has not.
+            ImplementationError: Parquet, and pyarrow is not installed.
+        """
+        self.name, self.model = path.name, model
+        columns, lines = _READERS[path.suffix.lower()](path, model)
+        names = _wanted(columns, column_names(model), self.name)
+        self.quantities = tuple(key for key in QUANTITIES if key in names)
+        parsed = {key: _numbers(columns, names[key], lines, self.name) for key in names}
+        printed = [parsed[key][1] for key in self.quantities]
+        rounded = not all(digits.full for digits in printed)
+        self.digits = min(digits.significant for digits in printed) if rounded else None
+        self._halves = {key: digits.half_units(x) for key, (x, digits) in parsed.items()}
+        self._states_rounded = rounded and any(_alike(parsed[key][1], printed) for key in STATE)
+        self.note = f"{self.name} is judged at {self.digits} digits, as it was printed" if rounded else ""
+        self._values = {key: x for key, (x, _) in parsed.items()}
+        if self._states_rounded:
+            _normalise(model, self._values["q"], self._halves["q"])
+        try:
+            self._values |= {key: coordinates(key, self._values[key], model.moving) for key in STATE}
+        except InputError as error:
+            raise InputError(f"{self.name}: {error}") from error
+
+    def states(self) -> Batch:
+        """The states of the table, in the order of its rows."""
+        return Batch(self.model, *(self._values[key] for key in STATE))
+
+    def evaluate(self, batch: Batch) -> Evaluation:
+        """The rows of these states.
+
+        Raises:
+            ImplementationError: they are not the table's.
+        """
+        part = slice(batch.first, batch.first + len(batch))
+        if not all(np.array_equal(self._values[key][part], getattr(batch, key)) for key in STATE):
+            raise ImplementationError(f"{self.name} has results at its own states and no others: leave --search out")
+        values = self._shaped(self._values, part)
+        allowed, halves = default_allowance(batch), self._shaped(self._halves, part)
+        shifts = self._of_rounded_states(batch, part) if self._states_rounded else {}
+        allowance = {
+            key: allowed[key] + (half if key == "tau" else norm(half)) + shifts.get(key, 0.0)
+            for key, half in halves.items()
+        }
+        return Evaluation(values, allowance)
+
+    def _shaped(self, columns: Mapping[str, Array], part: slice) -> dict[str, Array]:
+        """Results by quantity, (N, nv) or (N, links, 3)."""
+        numbers = np.concatenate([columns[key][part] for key in self.quantities], axis=1)
+        return split_columns(self.model, numbers, self.quantities)
+
+    def _of_rounded_states(self, batch: Batch, part: slice) -> dict[str, Array]:
+        """What half a unit in the last place of each coordinate, rate and acceleration changes, all added up."""
+        kernel = kernel_of(self.model, self.quantities)
+        loads = list(batch.loads) or None
+        state = {key: getattr(batch, key) for key in STATE}
+        here = kernel(batch.q, batch.v, batch.a, payload=loads)
+        total = {key: np.zeros(x.shape if key == "tau" else x.shape[:-1]) for key, x in here.items()}
+        for key in STATE:
+            for k, half in enumerate(self._halves[key][part].T):
+                moved = state[key].copy()
+                moved[:, k] += half
+                if key == "q":
+                    _normalise(self.model, moved, self._halves["q"][part])
+                there = kernel(**(state | {key: moved}), payload=loads)
+                for name, x in there.items():
+                    change = np.abs(x - here[name]) if name == "tau" else norm(x - here[name])
+                    total[name] += change
+        return total
+
+
+def _normalise(model: Model, q: Array, half: Array) -> None:
+    """Make quaternions that are of length 1 to their digits so to all digits, in place."""
+    at = 0
+    for joint in model.moving:
+        for first in joint.type.quaternions:
+            part = slice(at + first, at + first + 4)
+            length = norm(q[:, part])
+            close = np.abs(length - 1.0) <= 2 * half[:, part].sum(axis=1)
+            q[close, part] /= length[close, None]
+        at += joint.nq
+
+
+def _alike(digits: Digits, printed: Sequence[Digits]) -> bool:
+    """Whether the numbers of a state were printed as results were, with as many digits or as many decimals."""
+    fewest = min(printed, key=lambda result: result.significant)
+    return digits.significant >= fewest.significant or digits.decimals >= max(fewest.decimals, 1)
+
+
+def _wanted(columns: Columns, known: Mapping[str, list[str]], name: str) -> dict[str, list[str]]:
+    """The columns of each array that the table has.
+
+    Raises:
+        InputError: a state or result is not there, or only in part.
+        UnknownNameError: a column looks like one of these, and the robot has no such joint or link.
+    """
+    every = {column for names in known.values() for column in names}
+    for column in columns:
+        if column not in every and column.partition("_")[0] in known and "_" in column:
+            raise UnknownNameError("column", column, every, f"in {name}")
+    given = {key: names for key, names in known.items() if key in STATE or any(c in columns for c in names)}
+    missing = [column for names in given.values() for column in names if column not in columns]
+    if missing:
+        more = f" and {len(missing) - 8} more" if len(missing) > 8 else ""
+        raise InputError(f"{name} lacks the columns {', '.join(missing[:8])}{more}: see docs/notation.md")
+    if not any(key in QUANTITIES for key in given):
+        raise InputError(f"{name} has no column of results: add {', '.join(known['tau'][:3])}, ... or F_<link>_x, ...")
+    return given
+
+
+def _numbers(columns: Columns, names: Sequence[str], lines: Sequence[int], name: str) -> tuple[Array, Digits]:
+    """One array of a state or result, and the digits that it was printed with."""
+    digits, parts = Digits(), [np.zeros((len(lines), 0))]
+    for column in names:
+        texts = columns[column]
+        if isinstance(texts, np.ndarray):
+            values, of_column = _binary(texts, column, name)
+        else:
+            values, of_column = _parsed(texts, column, lines, name), Digits.of(texts)
+        digits = digits.with_all(of_column)
+        parts.append(values[:, None])
+    return np.concatenate(parts, axis=1), digits
+
+
+def _parsed(texts: Sequence[str], column: str, lines: Sequence[int], name: str) -> Array:
+    values = np.empty(len(texts))
+    for k, text in enumerate(texts):
+        try:
+            values[k] = number(text)
+        except ValueError:
+            shown = shortened(repr(text))
+            fix = ": write a point for the comma" if "," in text else ""
+            raise InputError(f"{name}, line {lines[k]}, column {column}: {shown} is no number{fix}") from None
+    return values
+
+
+def _binary(values: np.ndarray[Any, Any], column: str, name: str) -> tuple[Array, Digits]:
+    """A column of a binary file, and the digits that its type holds."""
+    if values.dtype.kind not in "iuf":
+        raise InputError(f"{name}, column {column}: {values.dtype} is no type of real numbers: write it as float64")
+    single = values.dtype.kind == "f" and values.dtype.itemsize < 8
+    digits = Digits(int(np.finfo(values.dtype).precision), 400) if single else Digits(17, 400)
+    return values.astype(np.float64), digits
+
+
+def _csv(path: Path, model: Model) -> tuple[Texts, list[int]]:
+    """A header and rows, separated by commas, semicolons or tabs; NumPy writes `# ` before the header."""
+    lines = _lines_of(path)
+    rows = ((number_, line) for number_, line in lines if line.strip())
+    first = next(rows, None)
+    if first is None:
+        raise InputError(f"{path.name} is empty: expected a header and a row for each state")
+    separator = max(",;\t", key=first[1].count)
+    header = _split(path.name, *first, separator)
+    header[0] = header[0].removeprefix("#").strip()
+    twice = [column for column in header if header.count(column) > 1] if len(set(header)) < len(header) else []
+    if twice:
+        raise InputError(f"{path.name} has the column {twice[0]!r} {header.count(twice[0])} times: name it once")
+    cells, numbers = [], []
+    for line_number, line in rows:
+        row = _split(path.name, line_number, line, separator)
+        if len(row) != len(header):
+            raise InputError(f"{path.name}, line {line_number}: {len(row)} cells, and the header has {len(header)}")
+        cells.append(row)
+        numbers.append(line_number)
+    if not cells:
+        raise InputError(f"{path.name} has a header and no row: add one for each state")
+    return dict(zip(header, map(list, zip(*cells, strict=True)), strict=True)), numbers
+
+
+def _split(name: str, line_number: int, line: str, separator: str) -> list[str]:
+    try:
+        return [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
+    except csv.Error as error:
+        raise InputError(f"{name}, line {line_number}: {error}") from error
+
+
+def _json_lines(path: Path, model: Model) -> tuple[Texts, list[int]]:
+    """One object a line, with the request and the reply of a program in it (docs/notation.md)."""
+    names, blocks, numbers = column_names(model), blocks_of(model), []
+    columns: Texts = {}
+    for line_number, line in _lines_of(path):
+        if not line.strip():
+            continue
+        where = f"{path.name}, line {line_number}"
+        try:
+            entry = json_of(line)
+            given = [key for key in names if isinstance(entry, dict) and key in entry]
+            row = {
+                column: text
+                for key in given
+                for column, text in zip(names[key], flattened(entry[key], blocks[key], f"{where}, {key}"), strict=True)
+            }
+        except ValueError as error:
+            raise InputError(f"{where}: {error}") from error
+        except RttrrError as error:
+            raise InputError(str(error)) from error
+        if columns and row.keys() != columns.keys():
+            raise InputError(f"{where}: other quantities than in the lines before: write the same in all")
+        for column, text in row.items():
+            columns.setdefault(column, []).append(text)
+        numbers.append(line_number)
+    if not numbers:
+        raise InputError(f"{path.name} is empty: expected an object for each state")
+    return columns, numbers
+
+
+def _parquet(path: Path, model: Model) -> tuple[Columns, list[int]]:
+    """A file of columns, with the types of its numbers."""
+    try:
+        from pyarrow import parquet
+    except ImportError as error:
+        raise ImplementationError(
+            "a Parquet table needs pyarrow, which is not installed: pip install 'rttrr-pin[parquet]'"
+        ) from error
+    try:
+        table = parquet.read_table(path)
+    except (OSError, ValueError) as error:  # pyarrow's own errors are of these two
+        raise InputError(f"{path.name} cannot be read as Parquet: {error}") from error
+    columns = {name: table.column(name).to_numpy() for name in table.column_names}
+    return columns, list(range(1, table.num_rows + 1))
+
+
+def _lines_of(path: Path) -> Iterator[tuple[int, str]]:
+    try:
+        with path.open(encoding="utf-8-sig") as file:
+            yield from enumerate(file, start=1)
+    except OSError as error:
+        raise InputError(f"{path} cannot be read: {error.strerror}") from error
+    except UnicodeDecodeError as error:
+        raise InputError(f"{path} is no UTF-8 text: {error.reason} at byte {error.start}") from error
+
+
+_READERS = {".csv": _csv, ".jsonl": _json_lines, ".parquet": _parquet}

@@ -1,0 +1,185 @@
+"""Results as text: numbers with the digits they were printed at, in lists or by name."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeAlias
+
+import numpy as np
+
+from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.model import Model
+from rttrr_pin.core.wrench import LINK_QUANTITIES, QUANTITIES
+from rttrr_pin.errors import ImplementationError, UnknownNameError, shortened
+
+NOT_FINITE = re.compile(r"\b(nan|inf)\b")
+
+FULL = 16
+"""Significant digits from which a printed number stands for one float64."""
+
+Blocks: TypeAlias = Sequence[tuple[str, int]]
+"""What numbers belong to, and how many each has: joints with their coordinates, links with x, y, z."""
+
+
+@dataclass(frozen=True, slots=True)
+class Digits:
+    """How the numbers of one quantity were printed.
+
+    Attributes:
+        significant: the most significant digits of any of them.
+        decimals: the most decimals of any of them.
+    """
+
+    significant: int = 0
+    decimals: int = 0
+
+    @classmethod
+    def of(cls, texts: Iterable[str]) -> Digits:
+        """The digits of decimal numbers; of what is not finite none."""
+        most = cls()
+        for text in texts:
+            if "n" in text.lower():  # NaN, infinity
+                continue
+            mantissa, _, exponent = text.lower().strip("+- ").partition("e")
+            whole, _, fraction = mantissa.partition(".")
+            significant = len((whole + fraction).lstrip("0"))
+            decimals = len(fraction) - (int(exponent) if exponent else 0)
+            if significant > most.significant or decimals > most.decimals:
+                most = most.with_all(cls(significant, decimals))
+        return most
+
+    def with_all(self, other: Digits) -> Digits:
+        """The most of both."""
+        return Digits(max(self.significant, other.significant), max(self.decimals, other.decimals))
+
+    @property
+    def full(self) -> bool:
+        """Whether nothing of a float64 was cut off."""
+        return self.significant >= FULL
+
+    def half_units(self, x: Array) -> Array:
+        """Half a unit of the last place that each number was printed to.
+
+        Numbers are printed with a fixed count of decimals (%.6f) or of significant digits (%.6g), and zeros at the end
+        may be cut off. Of the first kind it is the largest number that has the most digits, of the second the smallest
+        that has the most decimals; so the larger of the two half units is right for both.
+        """
+        if not self.significant:
+            return np.zeros_like(x)
+        with np.errstate(divide="ignore", over="ignore"):
+            leading = np.floor(np.log10(np.abs(np.where(np.isfinite(x), x, 0.0))))
+            of_significant = 10.0 ** (leading - self.significant + 1)
+        return 0.5 * np.maximum(of_significant, 10.0 ** float(-self.decimals))
+
+
+def blocks_of(model: Model) -> dict[str, Blocks]:
+    """By name of a state's or a result's array, what its numbers belong to."""
+    rates = [(joint.name, joint.nv) for joint in model.moving]
+    links = [(name, 3) for name in model.link_names]
+    coordinates = [(joint.name, joint.nq) for joint in model.moving]
+    return {"q": coordinates, "v": rates, "a": rates, "tau": rates} | dict.fromkeys(LINK_QUANTITIES, links)
+
+
+def column_names(model: Model) -> dict[str, list[str]]:
+    """By name of a state's or a result's array, the columns of a table: `q_joint_1`, ..., `n_tool_z`."""
+    joints = {"q": model.q_names, "v": model.v_names, "a": model.v_names, "tau": model.v_names}
+    names = {key: [f"{key}_{label}" for label in labels] for key, labels in joints.items()}
+    return names | {
+        key: [f"{key}_{link}_{axis}" for link in model.link_names for axis in "xyz"] for key in LINK_QUANTITIES
+    }
+
+
+def number(text: str) -> float:
+    """A decimal number, NaN or infinity.
+
+    Raises:
+        ValueError: it is none; Python's `1_000` is none either.
+    """
+    if "_" in text:
+        raise ValueError(text)
+    return float(text)
+
+
+def json_of(line: str) -> Any:
+    """A JSON text whose numbers stay text; C's nan and inf are numbers too.
+
+    Raises:
+        ValueError: it is none.
+    """
+    try:
+        return json.loads(line, parse_float=str, parse_int=str, parse_constant=str)
+    except (ValueError, RecursionError) as error:
+        words = NOT_FINITE.sub(lambda match: "NaN" if match[1] == "nan" else "Infinity", line)
+        if words != line:
+            return json_of(words)
+        raise ValueError(f"{shortened(line.strip())!r} is no JSON: {error}") from None
+
+
+def flattened(value: object, blocks: Blocks, where: str) -> list[str]:
+    """The texts of numbers of a JSON value: a list, nested or not, or an object by joint or link.
+
+    Raises:
+        ImplementationError: there are too few or too many, or one is no number.
+        UnknownNameError: a joint or link that the robot has not.
+    """
+    if not isinstance(value, Mapping):
+        return _counted(value, sum(width for _, width in blocks), where)
+    names = [name for name, _ in blocks]
+    for name in value:
+        if name not in names:
+            raise UnknownNameError("joint or link", name, names, f"{where} has one entry for each")
+    missing = [name for name in names if name not in value]
+    if missing:
+        raise ImplementationError(f"{where} lacks {', '.join(missing)}: write one entry for each")
+    return [text for name, width in blocks for text in _counted(value[name], width, f"{where} of {name}")]
+
+
+def quantities_of(reply: object, who: str) -> dict[str, object]:
+    """tau, or an object of some of tau, F, N, f, n, as an object.
+
+    Raises:
+        ImplementationError: it has none of them, or something else.
+    """
+    parts = dict(reply) if isinstance(reply, Mapping) else {"tau": reply}
+    unknown = [key for key in parts if key not in QUANTITIES]
+    if unknown or not parts:
+        raise ImplementationError(
+            f"{who} returned {', '.join(shortened(repr(key)) for key in unknown) or 'nothing'}: "
+            f"expected tau, or an object of some of {', '.join(QUANTITIES)}"
+        )
+    return parts
+
+
+def trial_states(model: Model, count: int = 3) -> tuple[Array, Array, Array]:
+    """States that differ in every coordinate, to find out what a program of the user's gives."""
+    fractions = np.linspace(0.1, 0.3, count)[:, None]
+    parts = [joint.type.coordinates_at(fractions * np.arange(1, joint.nv + 1)) for joint in model.moving]
+    q = np.concatenate([np.zeros((count, 0)), *parts], axis=1)
+    return q, (fractions - 0.1) * np.ones(model.nv), (0.4 - fractions) * np.ones(model.nv)
+
+
+def _counted(value: object, count: int, where: str) -> list[str]:
+    """So many numbers."""
+    texts = list(_texts(value, where))
+    if len(texts) != count:
+        raise ImplementationError(f"{where} has {len(texts)} number{'s' * (len(texts) != 1)}, expected {count}")
+    return texts
+
+
+def _texts(value: object, where: str) -> Iterator[str]:
+    """Numbers that were read as text; null stands for NaN, as some writers of JSON have it."""
+    if isinstance(value, list):
+        for item in value:
+            yield from _texts(item, where)
+    elif value is None:
+        yield "nan"
+    else:
+        try:
+            number(str(value))
+        except ValueError:
+            shown = shortened(repr(value))
+            raise ImplementationError(f"{where} has {shown} where a number is expected") from None
+        yield str(value)

@@ -1,0 +1,75 @@
+"""Implementations by name, from another package, and what is none."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from rttrr_pin import validate
+from rttrr_pin.errors import ImplementationError, RttrrError
+from rttrr_pin.implementations import make_implementation, names
+from support.pendulum import pendulum
+
+MODULE = """
+from rttrr_pin.implementations import Evaluation
+
+class Swing:
+    name, version, quantities = "swing", "7", ("tau",)
+    def __init__(self, model):
+        self.model = model
+    def evaluate(self, batch):
+        import numpy as np
+        return Evaluation({"tau": 0.6 * batch.a + 9.81 * np.sin(batch.q)})
+
+def broken(model):
+    raise RuntimeError("no licence")
+
+def no_implementation(model):
+    return model
+"""
+
+
+@pytest.fixture
+def other_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A distribution that somebody installed."""
+    (tmp_path / "swinging.py").write_text(MODULE)
+    info = tmp_path / "swinging-1.0.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text("Metadata-Version: 2.1\nName: swinging\nVersion: 1.0\n")
+    (info / "entry_points.txt").write_text(
+        "[rttrr_pin.implementations]\nswing = swinging:Swing\nbroken = swinging:broken\n"
+        "none = swinging:no_implementation\ngone = not_there:Swing\nkernel = swinging:broken\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+
+
+@pytest.mark.usefixtures("other_package")
+def test_another_package_registers_an_implementation() -> None:
+    assert "swing" in names()
+    result = validate(pendulum(), "swing", "recursion", n_states=50)
+    assert result.passed and result.subject == "swing 7"
+
+
+@pytest.mark.usefixtures("other_package")
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [("broken", "RuntimeError: no licence"), ("none", "is a Model"), ("gone", "No module named 'not_there'")],
+)
+def test_a_package_that_fails_is_named(name: str, message: str) -> None:
+    with pytest.raises(ImplementationError, match=message):
+        make_implementation(name, pendulum().model)
+
+
+@pytest.mark.usefixtures("other_package")
+def test_a_package_does_not_replace_ours() -> None:
+    assert make_implementation("kernel", pendulum().model).quantities == ("tau", "F", "N", "f", "n")
+    assert names().count("kernel") == 1
+
+
+@pytest.mark.parametrize(
+    "source", ["", " ", "kernle", "it's", "./no_such_program", "no_module_of:mine", "os:nothing", 3, None]
+)
+def test_what_is_no_implementation(source: object) -> None:
+    with pytest.raises(RttrrError):
+        make_implementation(source, pendulum().model)  # type: ignore[arg-type]
