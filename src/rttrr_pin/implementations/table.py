@@ -88,7 +88,7 @@ class Table:
         """
         part = slice(batch.first, batch.first + len(batch))
         if not all(np.array_equal(self._values[key][part], getattr(batch, key)) for key in STATE):
-            raise ImplementationError(f"{self.name} has results at its own states and no others: leave --search out")
+            raise ImplementationError(f"{self.name} has results at its own states and no others: a search needs a program")
         values = self._shaped(self._values, part)
         allowed, halves = default_allowance(batch), self._shaped(self._halves, part)
         shifts = self._of_rounded_states(batch, part) if self._states_rounded else {}
