@@ -116,10 +116,14 @@ def test_a_hostile_program_is_named_and_ended(tmp_path: Path, case: str) -> None
     reply = reply.replace("while True: print(1.5)", "[print(1.5) for _ in iter(int, 1)]")
     command = program(tmp_path, f'k or print(os.getpid(), file=open("{tmp_path}/pid", "w")); ' + reply)
     q = np.zeros((10, 1))
+
+    def ask() -> None:
+        one = Program(command, pendulum().model, 0.4 if case == "hangs" else 5.0)
+        time.sleep(0.3 if "while" in HOSTILE[case][0] else 0.0)
+        one.evaluate(Batch(pendulum().model, q, q, q, first=100))
+
     with pytest.raises(RttrrError) as caught:
-        Program(command, pendulum().model, 0.4 if case == "hangs" else 5.0).evaluate(
-            Batch(pendulum().model, q, q, q, first=100)
-        )
+        ask()
     assert message in str(caught.value)
     assert not alive(int((tmp_path / "pid").read_text()))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -10,8 +10,9 @@ import numpy as np
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.wrench import QUANTITIES
-from rttrr_pin.errors import ImplementationError, ShapeError
+from rttrr_pin.errors import ImplementationError, RttrrError, ShapeError
 from rttrr_pin.implementations.protocol import Batch, Evaluation
+from rttrr_pin.implementations.text_results import quantities_of, trial_states
 
 TRIED = 3
 """States that are handed over at once to see whether the function takes batches."""
@@ -21,7 +22,8 @@ class Function:
     """f(q, v, a) of one state, (nq,), (nv,), (nv,), or of a batch, (N, nq), (N, nv), (N, nv).
 
     It returns tau, or a dict of tau, F, N, f, n or some of them. Which of the two it takes is found out by calling it:
-    if it is given three states and returns three results, the same as one by one, it takes batches.
+    if it is given three states and returns three results, the same as one by one (unless it takes no single state), it
+    takes batches.
 
     Attributes:
         name: the function's own.
@@ -41,10 +43,17 @@ class Function:
         self.name: str = getattr(function, "__name__", type(function).__name__).replace("<lambda>", "function")
         self.function = function
         self.model = model
-        q, v, a = _trial_states(model)
-        alone = [self._checked(self._call(k, q[k], v[k], a[k]), ()) for k in range(TRIED)]
-        self.quantities = tuple(key for key in QUANTITIES if key in alone[0])
-        self.takes_batches = self._takes_batches((q, v, a), alone)
+        self.quantities: tuple[str, ...] = ()
+        q, v, a = trial_states(model, TRIED)
+        together = self._tried(lambda: [self._checked(self._call(0, q, v, a), (TRIED,))])
+        alone = self._tried(lambda: [self._checked(self._call(k, q[k], v[k], a[k]), ()) for k in range(TRIED)])
+        if isinstance(alone, RttrrError) and isinstance(together, RttrrError):
+            raise alone
+        self.takes_batches = not isinstance(together, RttrrError) and (
+            isinstance(alone, RttrrError) or _same(together[0], alone)
+        )
+        first = together if self.takes_batches else alone
+        self.quantities = tuple(key for key in QUANTITIES if key in first[0])  # type: ignore[index]
 
     def evaluate(self, batch: Batch) -> Evaluation:
         """What the function returns, state by state or at once."""
@@ -66,19 +75,18 @@ class Function:
 
     def _checked(self, result: Any, batch: tuple[int, ...]) -> dict[str, Array]:
         """What was returned, as arrays of the right shapes."""
-        parts = dict(result) if isinstance(result, Mapping) else {"tau": result}
-        unknown = [key for key in parts if key not in QUANTITIES]
-        if unknown or not parts:
+        parts = quantities_of(result, self.name)
+        if self.quantities and set(parts) != set(self.quantities):
             raise ImplementationError(
-                f"{self.name} returned {', '.join(map(repr, unknown)) or 'nothing'}: expected tau, or a dict of "
-                f"{', '.join(QUANTITIES)}"
+                f"{self.name} returned {', '.join(parts)}, and {', '.join(self.quantities)} when it was tried: "
+                "return the same quantities for each state"
             )
         return {key: self._array(key, parts[key], batch) for key in parts}
 
     def _array(self, key: str, x: Any, batch: tuple[int, ...]) -> Array:
         wanted = (*batch, self.model.nv) if key == "tau" else (*batch, len(self.model.links), 3)
         try:
-            array = np.asarray(x, dtype=np.float64)
+            array = np.asarray(x if x is not None else "None", dtype=np.float64)  # NumPy takes None for NaN
         except (TypeError, ValueError):
             raise ImplementationError(f"{self.name} returned {key} as {type(x).__name__}, expected numbers") from None
         if (
@@ -96,31 +104,19 @@ class Function:
             )
         return array
 
-    def _takes_batches(self, states: tuple[Array, Array, Array], alone: list[dict[str, Array]]) -> bool:
-        """Whether three states at once give the three results."""
+    @staticmethod
+    def _tried(trial: Callable[[], list[dict[str, Array]]]) -> list[dict[str, Array]] | RttrrError:
+        """What a trial yields, or why it fails."""
         try:
-            together = self._checked(self._call(0, *states), (TRIED,))
-        except (ImplementationError, ShapeError):
-            return False
-        return set(together) == set(alone[0]) and all(
-            np.allclose(together[key][k], alone[k][key], rtol=1e-6, atol=0.0, equal_nan=True)
-            for key in together
-            for k in range(TRIED)
-        )
+            return trial()
+        except RttrrError as error:
+            return error
 
 
-def _trial_states(model: Model) -> tuple[Array, Array, Array]:
-    """Three states that differ in every coordinate; quaternions are those of no rotation."""
-    q = np.concatenate(
-        [
-            np.tile([0.0] * (joint.nq - 1) + [1.0], (TRIED, 1))
-            if joint.nq != joint.nv
-            else np.linspace(0.1, 0.3, TRIED)[:, None] * np.arange(1, joint.nq + 1)
-            for joint in model.moving
-        ]
-        or [np.zeros((TRIED, 0))],
-        axis=1,
+def _same(together: dict[str, Array], alone: list[dict[str, Array]]) -> bool:
+    """Whether three states at once give the three results."""
+    return set(together) == set(alone[0]) and all(
+        np.allclose(together[key][k], result[key], rtol=1e-6, atol=0.0, equal_nan=True)
+        for key in together
+        for k, result in enumerate(alone)
     )
-    v = np.linspace(0.0, 0.2, TRIED)[:, None] * np.ones(model.nv)
-    a = np.linspace(0.3, 0.1, TRIED)[:, None] * np.ones(model.nv)
-    return q, v, a

@@ -115,7 +115,7 @@ class Program:
 
     def _replies(self, batch: Batch) -> list[dict[str, list[str]]]:
         """For each state the texts of the numbers by quantity; the program is ended where one cannot be had."""
-        replies = []
+        replies: list[dict[str, list[str]]] = []
         try:
             start = self.seconds * (START if self._child is None else 1)
             if self._child is None:
@@ -184,9 +184,15 @@ class _Child:
         Raises:
             _ReplyError: a reply did not come in time, or too much came, or the program has ended.
         """
+        self._unsent = b""
+        self._exchange(0.001)
+        self._check_silent()
         self._unsent = b"".join(requests)
         for k in range(len(requests)):
             yield self._line(start if k == 0 else seconds)
+        self._check_silent()
+
+    def _check_silent(self) -> None:
         if self._unsent or self._received.strip():
             raise _ReplyError(f"wrote more lines than it has read states: {_shown(self._received)}")
 

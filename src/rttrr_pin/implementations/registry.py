@@ -90,7 +90,10 @@ def make_implementation(source: Source, model: Model) -> Implementation:
 
 def _is_command(text: str) -> bool:
     """Whether it begins with the path of a file, or with a program that the shell would find, and arguments."""
-    words = shlex.split(text) if text.strip() else []
+    try:
+        words = shlex.split(text)
+    except ValueError:  # a quotation mark without its other half
+        return False
     if not words:
         return False
     return (os.sep in words[0] and Path(words[0]).is_file()) or (len(words) > 1 and shutil.which(words[0]) is not None)

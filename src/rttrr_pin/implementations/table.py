@@ -78,7 +78,7 @@ class Table:
 
     def states(self) -> Batch:
         """The states of the table, in the order of its rows."""
-        return Batch(self.model, *(self._values[key] for key in STATE))
+        return Batch(self.model, self._values["q"], self._values["v"], self._values["a"])
 
     def evaluate(self, batch: Batch) -> Evaluation:
         """The rows of these states.
@@ -88,7 +88,9 @@ class Table:
         """
         part = slice(batch.first, batch.first + len(batch))
         if not all(np.array_equal(self._values[key][part], getattr(batch, key)) for key in STATE):
-            raise ImplementationError(f"{self.name} has results at its own states and no others: a search needs a program")
+            raise ImplementationError(
+                f"{self.name} has results at its own states and no others: a search needs a function or a program"
+            )
         values = self._shaped(self._values, part)
         allowed, halves = default_allowance(batch), self._shaped(self._halves, part)
         shifts = self._of_rounded_states(batch, part) if self._states_rounded else {}

@@ -72,7 +72,8 @@ class Digits:
         with np.errstate(divide="ignore", over="ignore"):
             leading = np.floor(np.log10(np.abs(np.where(np.isfinite(x), x, 0.0))))
             of_significant = 10.0 ** (leading - self.significant + 1)
-        return 0.5 * np.maximum(of_significant, 10.0 ** float(-self.decimals))
+        halves: Array = 0.5 * np.maximum(of_significant, 10.0 ** float(-self.decimals))
+        return halves
 
 
 def blocks_of(model: Model) -> dict[str, Blocks]:
@@ -80,7 +81,8 @@ def blocks_of(model: Model) -> dict[str, Blocks]:
     rates = [(joint.name, joint.nv) for joint in model.moving]
     links = [(name, 3) for name in model.link_names]
     coordinates = [(joint.name, joint.nq) for joint in model.moving]
-    return {"q": coordinates, "v": rates, "a": rates, "tau": rates} | dict.fromkeys(LINK_QUANTITIES, links)
+    of_joints: dict[str, Blocks] = {"q": coordinates, "v": rates, "a": rates, "tau": rates}
+    return of_joints | dict.fromkeys(LINK_QUANTITIES, links)
 
 
 def column_names(model: Model) -> dict[str, list[str]]:

@@ -1,0 +1,109 @@
+"""A user's own function: of one state or many, right or wrong, and what it may not return."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rttrr_pin
+from rttrr_pin import RandomPayload, validate
+from rttrr_pin.cli import main
+from rttrr_pin.errors import ImplementationError, RttrrError
+from rttrr_pin.implementations.function import Function
+from support.pendulum import URDF, moment, pendulum
+
+GOOD: dict[str, tuple[Callable[..., Any], bool]] = {
+    "batch": (moment, True),
+    "one-state": (lambda q, v, a: [float(moment(q[0], v[0], a[0]))], False),
+    "scalar": (lambda q, v, a: float(moment(q, v, a).item()), False),
+    "batch-only": (lambda q, v, a: moment(q[:, 0], v[:, 0], a[:, 0]), True),
+    "dict": (lambda q, v, a: {"tau": moment(q, v, a)}, True),
+}
+
+
+@pytest.mark.parametrize("case", GOOD)
+def test_a_right_function_passes(case: str) -> None:
+    function, batches = GOOD[case]
+    assert Function(function, pendulum().model).takes_batches == batches
+    assert validate(pendulum(), function, "recursion", n_states=200).passed
+
+
+def test_a_function_may_change_its_arguments() -> None:
+    def careless(q: Any, v: Any, a: Any) -> Any:
+        a *= 0.6
+        a += 9.81 * np.sin(q)
+        return a
+
+    assert validate(pendulum(), careless, "recursion", n_states=50).passed
+
+
+def test_the_robots_own_function_passes_in_all_quantities_and_a_planted_error_is_found() -> None:
+    robot = rttrr_pin.load("rttrr")
+
+    def all_of(q: Any, v: Any, a: Any) -> dict[str, Any]:
+        return dict(robot.inverse_dynamics(q, v, a).items())
+
+    def wrong(q: Any, v: Any, a: Any) -> dict[str, Any]:
+        parts = all_of(q, v, a)
+        return parts | {"N": parts["N"] * (1 + 1e-9)}
+
+    assert validate(robot, all_of, "recursion", n_states=100).passed
+    rows = validate(robot, wrong, "recursion", n_states=100).references[0].rows
+    assert {row.quantity for row in rows if not row.passed} == {"N"}
+
+
+@pytest.mark.parametrize(
+    ("function", "message"),
+    [
+        (lambda q, v, a: 1 / 0, "raised ZeroDivisionError at state 0: division by zero"),
+        (lambda q: q, "raised TypeError at state 0"),
+        (lambda q, v, a: np.zeros(2), r"returned tau of shape \(2,\), expected \(1,\)"),
+        (lambda q, v, a: "text", "returned tau as str, expected numbers"),
+        (lambda q, v, a: None, "returned tau as NoneType"),
+        (lambda q, v, a: {"torque": q}, "returned 'torque'"),
+        (lambda q, v, a: {}, "returned nothing"),
+        (lambda q, v, a: {"f": np.zeros(4)}, "expected"),
+    ],
+)
+def test_what_a_function_may_not_do(function: Callable[..., Any], message: str) -> None:
+    with pytest.raises(RttrrError, match=message):
+        Function(function, pendulum().model)
+
+
+def test_a_function_that_fails_later_names_the_state() -> None:
+    def fails(q: Any, v: Any, a: Any) -> Any:
+        if abs(float(q[0])) > 3:
+            raise ValueError("singular")
+        return moment(q, v, a)
+
+    with pytest.raises(ImplementationError, match=r"raised ValueError at state \d+: singular"):
+        validate(pendulum(), fails, "recursion", n_states=200)
+
+    def changes(q: Any, v: Any, a: Any) -> Any:
+        return {"tau" if abs(float(q[0])) < 1 else "f": np.zeros(1 if abs(float(q[0])) < 1 else (1, 3))}
+
+    with pytest.raises(ImplementationError, match="returned f, and tau when it was tried"):
+        validate(pendulum(), changes, "recursion", n_states=200)
+
+
+def test_a_function_takes_no_payload() -> None:
+    with pytest.raises(ImplementationError, match="no payload"):
+        validate(pendulum(), moment, "recursion", n_states=5, payload=RandomPayload())
+
+
+def test_a_module_of_the_current_folder(
+    tmp_path: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "my_dynamics.py").write_text(
+        "import numpy as np\ndef my_id(q, v, a): return 0.6 * a + 9.81 * np.sin(q)\n"
+    )
+    (tmp_path / "pendulum.urdf").write_text(URDF)
+    monkeypatch.chdir(tmp_path)
+    words = ["validate", "pendulum.urdf", "--reference", "recursion", "--states", "50", "--subject"]
+    assert main([*words, "my_dynamics:my_id"]) == 0
+    assert "my_id" in capsys.readouterr().out.splitlines()[0]
+    assert main([*words, "my_dynamics:none"]) == 2
+    assert "has no attribute 'none'" in capsys.readouterr().err
