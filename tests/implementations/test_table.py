@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import rttrr_pin
-from rttrr_pin import validate
+from rttrr_pin import RandomPayload, Wrench, validate
 from rttrr_pin.errors import ImplementationError, InputError, RttrrError
 from rttrr_pin.implementations import Batch
 from rttrr_pin.implementations.table import Table
@@ -118,6 +118,14 @@ def test_a_floating_base_at_few_digits(tmp_path: Path) -> None:
 def test_results_that_are_no_number_are_deviations(tmp_path: Path) -> None:
     path = written(tmp_path, HEADER + "0,0,1,0.6\n0,0,1,nan\n0,0,1,inf\n")
     assert validate(pendulum(), path, "recursion").references[0].rows[0].failures == 2
+
+
+def test_the_payload_is_the_tables_own(tmp_path: Path) -> None:
+    payload = Wrench((0, 0, 0), (0, 5, 0))
+    assert validate(pendulum(), swings(tmp_path, error=5.0), "recursion", payload=payload).passed
+    assert not validate(pendulum(), swings(tmp_path), "recursion", payload=payload).passed
+    with pytest.raises(InputError, match="no random payload"):
+        validate(pendulum(), swings(tmp_path), "recursion", payload=RandomPayload())
 
 
 def test_a_table_has_its_own_states_alone(tmp_path: Path) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -66,7 +66,8 @@ class Run:
         if not robot.model.links:
             raise InputError(f"robot {robot.name!r} has no joint, so that there is nothing to compare")
         model = robot.model
-        sampler = Sampler(model, sampling, seed, resolved(robot, payload))
+        load = resolved(robot, payload)
+        sampler = Sampler(model, sampling, seed, load)
         judged = make_implementation(subject, model)
         others = tuple(make_references(reference, model))
         comparisons = []
@@ -78,7 +79,7 @@ class Run:
                     f"{', '.join(other.quantities)}: there is nothing to compare"
                 )
             comparisons.append(Comparison(model, common))
-        return cls(model, sampler, judged, others, tuple(comparisons), _table_of([judged, *others]))
+        return cls(model, sampler, judged, others, tuple(comparisons), _table_of([judged, *others], load))
 
     @property
     def rows(self) -> list[tuple[Implementation, Row]]:
@@ -125,8 +126,8 @@ class Run:
             return adjudicate(batch, list(zip(names, results, strict=True)))
 
 
-def _table_of(programs: list[Implementation]) -> Batch | None:
-    """The states of the table among the programs."""
+def _table_of(programs: list[Implementation], load: Load | RandomPayload | None) -> Batch | None:
+    """The states of the table among the programs, with the payload that its results were computed with."""
     tables = [program for program in programs if hasattr(program, "states")]
     if not tables:
         return None
@@ -135,7 +136,11 @@ def _table_of(programs: list[Implementation]) -> Batch | None:
         same = all(np.array_equal(getattr(first, x), getattr(states, x)) for x in "qva")
         if not same:
             raise InputError(f"{tables[0].name} and {table.name} are of different states: compare them one by one")
-    whole: Batch = first
+    if isinstance(load, RandomPayload):
+        raise InputError(
+            f"{tables[0].name} has its own states, and no random payload: pass the wrench it was made with"
+        )
+    whole: Batch = replace(first, loads=() if load is None else (load,))
     return whole
 
 
