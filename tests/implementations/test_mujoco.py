@@ -9,7 +9,6 @@ from typing import Any
 import mujoco
 import numpy as np
 import pytest
-from tests.implementations.test_pinocchio import TAMPERED, with_joint, with_link
 
 import rttrr_pin
 from rttrr_pin import JointEffects, RandomPayload, Robot, Wrench
@@ -23,6 +22,7 @@ from rttrr_pin.implementations.mujoco_model import PREFIX
 from rttrr_pin.validation import Sampler, validate
 from rttrr_pin.validation.comparison import Run
 from support.serial_chains import random_chain
+from support.tampered import TAMPERED, with_joint, with_link
 from support.tolerances import ROUNDING, WELL_BELOW, norm_error
 from support.trees import random_tree
 
