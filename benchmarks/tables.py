@@ -335,10 +335,33 @@ def installed_size() -> Lines:
     return table(["installed", "package", "MB", "MB with what it alone brings", "packages"], rows)
 
 
+def three_numbers() -> Lines:
+    """What the README claims, each with the page that has all of it."""
+    million, all_robots, fast = result("agreement"), result("example_robots"), result("kernel_speed")
+    bad = {entry["name"] for entry in all_robots["entries"] if entry["verdict"] != "agree"}
+    stopped = {
+        name for name in bad if all(e["verdict"] == "unusable" for e in all_robots["entries"] if e["name"] == name)
+    }
+    disagree = all_robots["verdicts"].get("disagree", 0)
+    agree = all_robots["files"] - len(stopped) - disagree
+    times = []
+    for robot in ROBOTS:
+        times.append(_row(fast["rows"], robot, "kernel_rows")["times_as_fast_as_pinocchio"])
+    return [
+        f"- {million['states']:,} random states of the bundled arm: kernel and Pinocchio **{million['verdict']}** in all five "
+        "quantities, link by link.",
+        f"- **{agree} of {all_robots['files']}** example robots agree on both bases; the others are stopped by a defect of their "
+        "file, which is named.",
+        f"- **{min(times):.0f} to {max(times):.0f} times** `rneaInParallel` on one thread, in batches of {STATES:,} states.",
+        "",
+        f"On {machine_of(fast)}; scripts, tables and other machines' words: [docs/benchmarks.md](docs/benchmarks.md).",
+    ]
+
+
 TABLES: dict[str, Callable[[], Lines]] = {
     "agreement": agreement, "audit": audit, "bounds": bounds, "calls": calls, "cost": cost, "errors": errors,
     "installed size": installed_size, "joints": joints, "main path": main_path, "operations": operations,
-    "peers": peers, "robots": robots, "speed": speed,
+    "peers": peers, "robots": robots, "speed": speed, "three numbers": three_numbers,
 }  # fmt: skip
 """By the name in the marker."""
 
