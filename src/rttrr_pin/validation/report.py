@@ -26,7 +26,7 @@ from rttrr_pin.validation.state import StateComparison, StateReport
 if TYPE_CHECKING:
     from rttrr_pin.validation.search import WorstCase  # loads scipy
 
-LEGEND = "relative error: of |reference|, in eps; error / tolerance: 1 is all that rounding can explain"
+LEGEND = "relative: of |reference|; error / tolerance: 1 is all that rounding can explain"
 
 
 def show_validation(result: Validation, console: Console, rerun: str = "", full: bool = False) -> None:
@@ -49,8 +49,7 @@ def show_validation(result: Validation, console: Console, rerun: str = "", full:
     grouped = _places(result)
     shown = grouped if full else _worst_places(grouped)
     console.print(_several_table(result, shown) if len(result.references) > 1 else _table(shown))
-    legend = LEGEND if full else f"{LEGEND}; --full shows all {len(grouped)} rows"
-    for line in (*result.notes, legend):
+    for line in (*result.notes, LEGEND, *([] if full else [f"the worst of {len(grouped)} rows; --full shows all"])):
         console.print(Text(line, "dim"), soft_wrap=True)
     _show_verdict(result, console)
     _show_adjudications(result, console)
@@ -94,7 +93,7 @@ def _worst_places(places: Sequence[_Place]) -> list[_Place]:
 
 
 def _table(places: Sequence[_Place]) -> Table:
-    table = Table("", "at", "worst error", "relative [eps]", "error / tolerance", "at state", "", box=None)
+    table = Table("", "at", "worst error", "relative (eps)", "error / tolerance", "at state", "", box=None)
     for column in table.columns:
         column.no_wrap = True
     for column in table.columns[2:6]:
@@ -237,7 +236,7 @@ def show_state(report: StateReport, console: Console) -> None:
 
 
 def _show_comparison(report: StateReport, comparison: StateComparison, console: Console) -> None:
-    table = Table("", "subject", "reference", "error", "relative [eps]", "", box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
+    table = Table("", "subject", "reference", "error", "relative (eps)", "", box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
     table.columns[0].overflow = "fold"
     for column in table.columns[1:5]:
         column.justify = "right"
@@ -311,7 +310,7 @@ def show_many(entries: Sequence[Entry], task: Task, seconds: float, console: Con
             f"{task.sampling} states each, seed {task.seed}"
         )
     )
-    table = Table("robot", "base", "joints", "links", "relative [eps]", "error / tolerance", "verdict")
+    table = Table("robot", "base", "joints", "links", "relative (eps)", "error / tolerance", "verdict")
     for column in table.columns[2:6]:
         column.justify = "right"
     for entry in entries:
