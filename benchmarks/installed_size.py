@@ -12,9 +12,10 @@ from collections.abc import Iterator
 from importlib import metadata
 from pathlib import Path
 
-from common import arguments, finish
 from packaging.requirements import Requirement
 from packaging.utils import canonicalize_name
+
+from common import arguments, finish
 
 EXTRAS = ("", "mujoco", "robots", "xacro", "test", "dev")
 """Those of ours that are weighed if they are installed; the empty one is what comes with the package itself."""

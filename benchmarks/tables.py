@@ -348,13 +348,11 @@ def three_numbers() -> Lines:
     for robot in ROBOTS:
         times.append(_row(fast["rows"], robot, "kernel_rows")["times_as_fast_as_pinocchio"])
     return [
-        f"- {million['states']:,} random states of the bundled arm: kernel and Pinocchio **{million['verdict']}** in all five "
-        "quantities, link by link.",
-        f"- **{agree} of {all_robots['files']}** example robots agree on both bases; the others are stopped by a defect of their "
-        "file, which is named.",
-        f"- **{min(times):.0f} to {max(times):.0f} times** `rneaInParallel` on one thread, in batches of {STATES:,} states.",
+        f"- {million['states']:,} random states of the bundled arm: **{million['verdict']}**, all quantities, link by link.",
+        f"- **{agree} of {all_robots['files']}** example robots agree on both bases; the files of the others are defective.",
+        f"- **{min(times):.0f} to {max(times):.0f} times** `rneaInParallel` on one thread, {STATES:,} states at once.",
         "",
-        f"On {machine_of(fast)}; scripts, tables and other machines' words: [docs/benchmarks.md](docs/benchmarks.md).",
+        f"{machine_of(fast)}; scripts and tables: [docs/benchmarks.md](docs/benchmarks.md).",
     ]
 
 
