@@ -348,8 +348,8 @@ def three_numbers() -> Lines:
     for robot in ROBOTS:
         times.append(_row(fast["rows"], robot, "kernel_rows")["times_as_fast_as_pinocchio"])
     return [
-        f"- {million['states']:,} random states of the bundled arm: **{million['verdict']}**, all quantities, link by link.",
-        f"- **{agree} of {all_robots['files']}** example robots agree on both bases; the files of the others are defective.",
+        f"- {million['states']:,} random states of the bundled arm: **{million['verdict']}**, link by link.",
+        f"- **{agree} of {all_robots['files']}** example robots agree on both bases; the others' files are defective.",
         f"- **{min(times):.0f} to {max(times):.0f} times** `rneaInParallel` on one thread, {STATES:,} states at once.",
         "",
         f"{machine_of(fast)}; scripts and tables: [docs/benchmarks.md](docs/benchmarks.md).",

@@ -60,8 +60,10 @@ def summary(thing: Any) -> str:
 def entry(name: str, thing: Any) -> list[str]:
     """One public name: a heading, its signature, its docstring, and the methods of a class."""
     if not (inspect.isclass(thing) or inspect.isroutine(thing)):
-        shown = ", ".join(map(str, thing)) if isinstance(thing, (dict, tuple, list)) else str(thing)
-        return [f"### `{name}`", "", f"Constant: {shown}"]
+        plain = (str, int, float)
+        items = list(thing) if isinstance(thing, (dict, tuple, list, set)) else [thing]
+        values = ", ".join(map(str, items)) if all(isinstance(item, plain) for item in items) else ""
+        return [f"### `{name}`", "", f"Constant: {values or f'{len(items)} of {type(items[0]).__name__}'}"]
     kind = "class " if inspect.isclass(thing) else ""
     lines = [f"### `{name}`", "", "```python", f"{kind}{name}{signature(thing)}", "```", "", *body(thing)]
     if inspect.isclass(thing):
@@ -88,8 +90,10 @@ def signature(thing: Any) -> str:
         text = str(inspect.signature(thing))
     except (TypeError, ValueError):
         return ""
-    text = re.sub(r"\(self(, )?", "(", text, count=1).replace("'", "")
-    return re.sub(r"<factory>|<rttrr_pin\.[^>]*>", "...", text)
+    text = re.sub(r"\(self(, )?", "(", text, count=1)
+    text = re.sub(r"(: |-> )'([^']*)'", r"\1\2", text)
+    text = re.sub(r"PosixPath\('(?:[^']*/)?([^'/]*)'\)", r"\1", text)
+    return re.sub(r"<function <lambda> [^>]*>|<(function|rttrr_pin|factory)[^>]*>", "...", text)
 
 
 def body(thing: Any) -> list[str]:

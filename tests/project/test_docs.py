@@ -179,3 +179,9 @@ def test_public_docstrings_give_units(name: str) -> None:
     text = inspect.getdoc(thing) or ""
     members = "" if inspect.isfunction(thing) else inspect.getdoc(getattr(thing, "inverse_dynamics", thing)) or ""
     assert "[" in text + members
+
+
+@pytest.mark.parametrize("script", ["docs/api.py", "docs/figures/link.py"])
+def test_generated_pages_are_what_their_scripts_write(script: str) -> None:
+    done = subprocess.run([sys.executable, ROOT / script, "--check"], capture_output=True, text=True, check=False)
+    assert done.returncode == 0, f"run python {script}\n{done.stderr}"
