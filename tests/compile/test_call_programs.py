@@ -25,6 +25,7 @@ from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.errors import InputError, NumberError
 from rttrr_pin.implementations import Batch
 from rttrr_pin.validation import Sampler
+from support.recursion import recursion
 from support.serial_chains import random_chain
 from support.slow import slow_after
 from support.tolerances import ROUNDING, norm_error
@@ -81,7 +82,7 @@ def test_trees_of_all_joints_followers_drives_and_payloads(seed: int, base: str,
     s = states(robot, seed)
     for wrenches in (None, payload(robot)):
         ours = forced(robot, FIVE, by)(s.q, s.v, s.a, payload=wrenches)
-        assert_equal(ours, robot.inverse_dynamics(s.q, s.v, s.a, wrenches))
+        assert_equal(ours, recursion(robot, s.q, s.v, s.a, wrenches))
 
 
 @pytest.mark.parametrize("seed", slow_after(1, range(2)))
@@ -99,7 +100,7 @@ def test_any_robot_of_the_shared_fixture(robot: Robot) -> None:
     """Fixed joints at any place, no joint that moves, one joint."""
     s = states(robot, 1)
     ours = forced(robot, FIVE)(s.q, s.v, s.a)
-    assert_equal(ours, robot.inverse_dynamics(s.q, s.v, s.a))
+    assert_equal(ours, recursion(robot, s.q, s.v, s.a))
 
 
 def test_a_long_chain_takes_calls_by_itself() -> None:
@@ -107,7 +108,7 @@ def test_a_long_chain_takes_calls_by_itself() -> None:
     assert isinstance(build.build(robot.model, ["tau"]), CallProgram)
     s = states(robot, 0, 20)
     tau = robot.compile("tau")(s.q, s.v, s.a)
-    for ours, reference in zip(tau, robot.inverse_dynamics(s.q, s.v, s.a).tau, strict=True):
+    for ours, reference in zip(tau, recursion(robot, s.q, s.v, s.a).tau, strict=True):
         assert norm_error(ours, reference) <= ROUNDING
 
 
@@ -149,9 +150,7 @@ def test_emitters_that_know_no_calls_get_straight_lines(rttrr: Robot, monkeypatc
     monkeypatch.setattr(build, "call_program", None)
     monkeypatch.setattr(type(emitter("numpy")), "calls", False)
     s = states(rttrr, 0)
-    assert (
-        norm_error(forced(rttrr, "tau", "numpy")(s.q, s.v, s.a), rttrr.inverse_dynamics(s.q, s.v, s.a).tau) <= ROUNDING
-    )
+    assert norm_error(forced(rttrr, "tau", "numpy")(s.q, s.v, s.a), recursion(rttrr, s.q, s.v, s.a).tau) <= ROUNDING
 
 
 def test_code_does_not_grow_with_the_robot() -> None:
@@ -254,7 +253,7 @@ def test_a_block_that_is_too_large_for_the_stack_is_allocated() -> None:
     s = states(robot, 0, 2)
     kernel = robot.compile("tau")
     tau = kernel(s.q, s.v, s.a)
-    assert norm_error(tau, robot.inverse_dynamics(s.q, s.v, s.a).tau) <= ROUNDING
+    assert norm_error(tau, recursion(robot, s.q, s.v, s.a).tau) <= ROUNDING
     again = np.empty_like(tau)
     before = threading.stack_size(256 * 1024)
     try:

@@ -25,6 +25,7 @@ from rttrr_pin.compile import QUANTITIES, Kernel
 from rttrr_pin.errors import InputError, NumberError, ShapeError, UnknownNameError
 from rttrr_pin.validation import Sampler
 from support.inputs import BAD, JOINTS, PAYLOADS, ZERO, some
+from support.recursion import recursion
 from support.serial_chains import EXAMPLES
 from support.slow import slow_after, slow_but
 from support.tolerances import ROUNDING, norm_error
@@ -68,7 +69,7 @@ def agree(
     outputs = (outputs,) if isinstance(outputs, str) else outputs
     drawn = Sampler(robot.model, "mixed", seed).draw(0, 70)
     ours = robot.compile(outputs, emitter)(drawn.q, drawn.v, drawn.a, payload=payload)
-    theirs = robot.inverse_dynamics(drawn.q, drawn.v, drawn.a, payload)
+    theirs = recursion(robot, drawn.q, drawn.v, drawn.a, payload)
     for name in outputs:
         assert norm_error(ours[name], getattr(theirs, name)) <= ROUNDING, name
 
@@ -154,7 +155,7 @@ def test_all_outputs_at_once_in_the_order_asked_for(rttrr: Robot) -> None:
     state = some((70,))
     together = rttrr.compile(names)(*state)
     assert tuple(together) == names
-    reference = rttrr.inverse_dynamics(*state)
+    reference = recursion(rttrr, *state)
     for name in RECURSION:
         assert norm_error(together[name], getattr(reference, name)) <= ROUNDING
 
@@ -220,7 +221,7 @@ def test_robots_without_a_joint(text: str, batch: tuple[int, ...], emitter: str)
     robot = rttrr_pin.load(EXAMPLES.get(text, '<robot name="x"><link name="base"/></robot>'))
     empty = np.zeros((*batch, 0))
     result = robot.compile(tuple(QUANTITIES), emitter)(empty, empty, empty)
-    reference = robot.inverse_dynamics(empty, empty, empty)
+    reference = recursion(robot, empty, empty, empty)
     for name in RECURSION:
         assert result[name].shape == getattr(reference, name).shape
         assert norm_error(result[name], getattr(reference, name)) <= ROUNDING
@@ -827,7 +828,7 @@ def test_different_robots_compiled_at_the_same_time(rttrr: Robot, monkeypatch: p
     robots = [Robot(rttrr.model.with_gravity(np.array([0, 0, -g]))) for g in (1.0, 2.0, 3.0)]
     results = in_threads([lambda robot=robot: robot.compile("gravity_torque")(ZERO + 0.3) for robot in robots])
     for robot, result in zip(robots, results, strict=True):
-        assert norm_error(result, robot.inverse_dynamics(ZERO + 0.3, ZERO, ZERO).tau) <= ROUNDING
+        assert norm_error(result, recursion(robot, ZERO + 0.3, ZERO, ZERO).tau) <= ROUNDING
 
 
 def test_calls_at_the_same_time_do_not_meet(rttrr: Robot) -> None:

@@ -15,6 +15,7 @@ from rttrr_pin.compile import QUANTITIES
 from rttrr_pin.core.joints import CONTINUOUS, FLOATING, PLANAR
 from rttrr_pin.errors import InputError
 from rttrr_pin.validation import Sampler
+from support.recursion import recursion
 from support.serial_chains import inertial, joint, random_chain
 from support.slow import slow_but
 from support.tolerances import DIFFERENCES, EPS, ROUNDING, norm_error
@@ -108,7 +109,7 @@ def test_tau_is_mass_matrix_times_acceleration_plus_nonlinear_effects(case: str)
     robot, drawn, ours = made(case)
     inertial_part = np.einsum("kij,kj->ki", ours["mass_matrix"], drawn.a)
     whole = np.linalg.norm(inertial_part) + np.linalg.norm(ours["nonlinear_effects"])
-    tau = robot.inverse_dynamics(drawn.q, drawn.v, drawn.a).tau
+    tau = recursion(robot, drawn.q, drawn.v, drawn.a).tau
     assert np.linalg.norm(inertial_part + ours["nonlinear_effects"] - tau) <= ROUNDING * whole
     assert norm_error(ours["tau"], tau) <= ROUNDING
 
@@ -117,7 +118,7 @@ def test_tau_is_mass_matrix_times_acceleration_plus_nonlinear_effects(case: str)
 def test_gravity_torque_is_what_holds_it_still(case: str) -> None:
     robot, drawn, ours = made(case)
     rest = np.zeros(robot.model.nv)
-    assert norm_error(ours["gravity_torque"], robot.inverse_dynamics(drawn.q, rest, rest).tau) <= ROUNDING
+    assert norm_error(ours["gravity_torque"], recursion(robot, drawn.q, rest, rest).tau) <= ROUNDING
 
 
 @pytest.mark.parametrize("case", ROBOTS)
@@ -142,7 +143,7 @@ def test_the_regressor_is_pinocchios(case: str) -> None:
 @pytest.mark.parametrize("case", ROBOTS)
 def test_tau_is_linear_in_the_inertial_parameters(case: str) -> None:
     robot, drawn, ours = made(case)
-    tau = robot.inverse_dynamics(drawn.q, drawn.v, drawn.a).tau
+    tau = recursion(robot, drawn.q, drawn.v, drawn.a).tau
     terms = np.abs(ours["regressor"]) @ np.abs(robot.inertial_parameters())
     error = np.linalg.norm(ours["regressor"] @ robot.inertial_parameters() - tau)
     assert error <= ROUNDING * np.linalg.norm(terms)
@@ -183,7 +184,7 @@ def test_derivatives_are_the_limits_of_differences(case: str) -> None:
                     state["q"] = our_coordinates(robot, own, pin.integrate(model, q[k], sign * direction), drawn.q[k])
                 else:
                     state[by] = state[by] + sign * direction
-                pair.append(robot.inverse_dynamics(**state).tau)
+                pair.append(recursion(robot, **state).tau)
             moved.append((pair[0] - pair[1]) / (2 * step))
         size = np.linalg.norm(ours[name][k]) + np.linalg.norm(ours["tau"][k])
         assert np.linalg.norm(ours[name][k] - np.array(moved).T) <= DIFFERENCES * size, name
@@ -235,7 +236,7 @@ def of_driven(driven: Robot) -> tuple[Any, dict[str, np.ndarray]]:
 
 def test_followers_and_drives_enter_as_in_the_recursion(driven: Robot, of_driven: Any) -> None:
     drawn, ours = of_driven
-    reference = driven.inverse_dynamics(drawn.q, drawn.v, drawn.a)
+    reference = recursion(driven, drawn.q, drawn.v, drawn.a)
     M, h = ours["mass_matrix"], ours["nonlinear_effects"]
     np.testing.assert_array_equal(M, M.swapaxes(-1, -2))
     np.linalg.cholesky(M)
@@ -264,7 +265,7 @@ def test_derivatives_under_a_payload(rttrr: Robot, axes: Any) -> None:
         for j, direction in enumerate(step * np.eye(5)):
             state = {name: getattr(drawn, name) for name in "qva"}
             taus = [
-                rttrr.inverse_dynamics(**(state | {by: state[by] + sign * direction}), payload=payload).tau
+                recursion(rttrr, **(state | {by: state[by] + sign * direction}), payload=payload).tau
                 for sign in (1, -1)
             ]
             size = np.linalg.norm(ours) + np.linalg.norm(taus)
@@ -295,7 +296,7 @@ def check_carrier(link: str) -> None:
         + "</robot>"
     )
     drawn = Sampler(robot.model, "mixed", 0).draw(0, STATES)
-    tau = robot.inverse_dynamics(drawn.q, drawn.v, drawn.a).tau
+    tau = recursion(robot, drawn.q, drawn.v, drawn.a).tau
     assert norm_error(robot.compile("tau", "numpy")(drawn.q, drawn.v, drawn.a), tau) <= ROUNDING
 
 
