@@ -52,7 +52,7 @@ def block(job: tuple[str, int, int]) -> tuple[str, int, dict[str, tuple[int, np.
     """Violations, sampled ratios bound / error, and the largest error and bound in eps of the vector, by quantity."""
     name, first, count = job
     robot, _, bounded, alone = kernel(name)
-    states = Sampler(robot.model, "uniform", 0, robot.link_names[-1]).draw(first, count)
+    states = Sampler(robot.model, "uniform", 0, rttrr_pin.RandomPayload(robot.link_names[-1])).draw(first, count)
     wrench = [rttrr_pin.Wrench(x.f, x.n, robot.link_names[x.link]) for x in states.loads]
     computed = bounded(states.q, states.v, states.a, payload=wrench, threads=1)
     tau = alone(states.q, states.v, states.a, payload=wrench, threads=1)

@@ -14,7 +14,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import rttrr_pin
-from rttrr_pin import Robot
+from rttrr_pin import RandomPayload, Robot
 from rttrr_pin.compile import bounds
 from rttrr_pin.compile.build import build
 from rttrr_pin.compile.constants import ConstantWithError, error_of, exactly
@@ -136,7 +136,7 @@ def check(
     robot: Robot, sampling: str, seed: int, emitter: str | None = None, quantities: tuple[str, ...] = FIVE
 ) -> None:
     """Against 60 digits on the same doubles, component by component."""
-    states = Sampler(robot.model, sampling, seed, robot.link_names[-1]).draw(0, STATES)
+    states = Sampler(robot.model, sampling, seed, RandomPayload(robot.link_names[-1])).draw(0, STATES)
     payload = [rttrr_pin.Wrench(x.f, x.n, robot.link_names[x.link]) for x in states.loads]
     kernel = robot.compile((*quantities, *(name + "_bound" for name in quantities)), emitter)
     result = kernel(states.q, states.v, states.a, payload=payload or None)

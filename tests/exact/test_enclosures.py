@@ -61,7 +61,7 @@ def check_narrow(enclosures: Enclosures) -> None:
 
 
 def check_against_60_digits(robot: Robot, sampling: str, seed: int, rows: int) -> None:
-    states = Sampler(robot.model, sampling, seed, robot.link_names[-1]).draw(0, rows)
+    states = Sampler(robot.model, sampling, seed, RandomPayload(robot.link_names[-1])).draw(0, rows)
     enclosures = certified(robot, states)
     check_narrow(enclosures)
     with mpmath.workdps(60):

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import rttrr_pin
-from rttrr_pin import Robot
+from rttrr_pin import RandomPayload, Robot
 from rttrr_pin.core.dynamics import bodies, dynamics
 from rttrr_pin.core.scalars import UNIT_ROUNDOFF
 from rttrr_pin.exact import BOUNDED, Bounded, bounded_dynamics
@@ -38,7 +38,7 @@ def test_no_true_error_exceeds_its_bound(robot: Robot, sampling: str, seed: int)
 
 def check_bounds(robot: Robot, sampling: str, seed: int) -> None:
     """Against 60 digits on the same doubles, component by component."""
-    states = Sampler(robot.model, sampling, seed, robot.link_names[-1]).draw(0, 12)
+    states = Sampler(robot.model, sampling, seed, RandomPayload(robot.link_names[-1])).draw(0, 12)
     values, bounds = bounded_dynamics(robot.model, states.q, states.v, states.a, states.loads)
     with mpmath.workdps(60):
         for k in range(12):

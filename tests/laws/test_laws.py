@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 import rttrr_pin
-from rttrr_pin import Robot, Wrench
+from rttrr_pin import RandomPayload, Robot, Wrench
 from rttrr_pin.cli import main
 from rttrr_pin.core.algebra import ZERO, Vector
 from rttrr_pin.core.joints import JOINT_TYPES
@@ -136,7 +136,7 @@ def test_every_law_is_violated_by_an_error_that_breaks_it(tree: Robot, law: str)
 
 def test_every_error_is_found_by_a_law(tree: Robot) -> None:
     """Also those in the tenth digit of one term; laws that take long come last."""
-    states = Sampler(tree.model, payload=tree.link_names[-1]).draw(0, 1)
+    states = Sampler(tree.model, payload=RandomPayload(tree.link_names[-1])).draw(0, 1)
     laws = sorted(LAWS, key=lambda law: "EBKSLIM".index(law.id[0]))
     loads = (*states.loads, Load(4, -states.loads[0].f, states.loads[0].n, in_base=True))
 
