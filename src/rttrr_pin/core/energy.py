@@ -1,8 +1,7 @@
 """Energy, momentum and power of a robot in motion, over scalars of any kind.
 
-From the kinematics of the joints alone: how {i} stands on its parent and how fast it moves against it
-(`JointType.motion`). No acceleration and no force is computed here; those come from derivatives, by duals. So what
-is built on this module shares nothing with the Newton-Euler recursion but the motion of single joints, and that is
+From the kinematics of single joints (`JointType.motion`) alone. Accelerations and forces come from derivatives, by
+duals, so what stands on this module shares with the Newton-Euler recursion only the motion of single joints, which is
 checked by derivatives too (law K101).
 
 Source: Goldstein, "Classical Mechanics", chapters 1 and 5; for twists as rates Kirchhoff's equations, Lamb,
@@ -29,7 +28,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class LinkState:
-    """Where link i is and how fast.
+    """Placement and velocity of link i.
 
     Attributes:
         R: R_0_i.
@@ -47,13 +46,13 @@ class LinkState:
         """Velocity of the point of the link at r, v + w x r; both in {i}."""
         return self.v + self.w.cross(r)
 
-    def place_of(self, r: Vector) -> Vector:
-        """Where the point of the link at r is: p + R r, from the base's origin in base axes."""
+    def position_of(self, r: Vector) -> Vector:
+        """Position p + R r of the point of the link at r, from the base's origin in base axes."""
         return self.p + self.R @ r
 
     @property
     def now(self) -> LinkState:
-        """The values of what is made of duals."""
+        """The values of the duals."""
         a, b, c = (now(row) for row in self.R.rows)
         return LinkState(Matrix((a, b, c)), now(self.p), now(self.w), now(self.v))
 
@@ -68,12 +67,12 @@ def link_states(
     with R, p, w, v of the joint against its parent p.
     """
     base = LinkState(IDENTITY, ZERO, ZERO, ZERO)
-    found: list[LinkState] = []
+    moving: list[LinkState] = []
     for joint, body, state in zip(model.joints, links, states, strict=True):
-        parent = found[joint.parent] if joint.parent >= 0 else base
+        parent = moving[joint.parent] if joint.parent >= 0 else base
         motion = body.type.motion(body, state, arithmetic.sincos)
         R, p = motion.R, motion.p
-        found.append(
+        moving.append(
             LinkState(
                 R=parent.R @ R,
                 p=parent.p + parent.R @ p,
@@ -81,13 +80,13 @@ def link_states(
                 v=R.T @ (parent.v + parent.w.cross(p)) + motion.v,
             )
         )
-    return found
+    return moving
 
 
 def moving_links(
     model: Model, links: Sequence[Body], q: Sequence[Scalar], v: Sequence[Scalar], arithmetic: Arithmetic
 ) -> list[LinkState]:
-    """The same from coordinates and rates."""
+    """Placement and velocity of each link, from coordinates and rates."""
     at_rest = [0] * len(v)
     return link_states(model, links, joint_states(model, arithmetic, q, v, at_rest), arithmetic)
 
@@ -105,7 +104,7 @@ def potential_energy(links: Sequence[Body], moving: Sequence[LinkState], gravity
     """V = - sum of M g . p_C [J]; zero where the centre of mass is at the base's origin."""
     total: Scalar = 0
     for body, link in zip(links, moving, strict=True):
-        total = gravity.dot(link.place_of(body.r_C)) * body.M + total
+        total = gravity.dot(link.position_of(body.r_C)) * body.M + total
     return -total
 
 
@@ -121,7 +120,7 @@ def spin(body: Body, link: LinkState) -> Vector:
 
 def angular_momentum(body: Body, link: LinkState) -> Vector:
     """p_C x M v_C + I w of one link: about the base's origin, in base axes [kg m^2/s]."""
-    return link.place_of(body.r_C).cross(linear_momentum(body, link)) + spin(body, link)
+    return link.position_of(body.r_C).cross(linear_momentum(body, link)) + spin(body, link)
 
 
 def in_base_axes(payload: Payload, link: LinkState) -> tuple[Vector, Vector]:
@@ -132,7 +131,7 @@ def in_base_axes(payload: Payload, link: LinkState) -> tuple[Vector, Vector]:
 
 
 def payload_power(payloads: Sequence[Payload], moving: Sequence[LinkState]) -> Scalar:
-    """What the robot gives its surroundings: sum of f_tool . v + n_tool . w [W]."""
+    """Power of the robot on its surroundings: sum of f_tool . v + n_tool . w [W]."""
     total: Scalar = 0
     for payload in payloads:
         link = moving[payload.link]
@@ -143,22 +142,22 @@ def payload_power(payloads: Sequence[Payload], moving: Sequence[LinkState]) -> S
     return total
 
 
-def drive_power(
+def joint_effects_power(
     model: Model, arithmetic: Arithmetic, states: Sequence[JointState], rates: Sequence[JointState]
 ) -> Scalar:
-    """What the joints themselves take at these rates: sum of (armature a + damping v + friction sign v) . rate [W].
+    """Power of armature, damping and friction: sum of (armature a + damping v + friction sign v) . rate [W].
 
     Args:
         model: the robot.
         arithmetic: the kind of scalar of states.
-        states: v and a that the forces are of, joint by joint.
-        rates: the rates that they work at: the same, or duals of them for the force along each.
+        states: v and a that the forces follow from, joint by joint.
+        rates: the rates that the forces work at: the same, or duals of them to obtain the force along each.
     """
     total: Scalar = 0
-    for joint, state, moved in zip(model.joints, states, rates, strict=True):
+    for joint, state, at in zip(model.joints, states, rates, strict=True):
         effects = joint.effects
         coefficients = (effects.armature, effects.damping, effects.friction)
-        for v, a, rate in zip(state.v, state.a, moved.v, strict=True):
+        for v, a, rate in zip(state.v, state.a, at.v, strict=True):
             for coefficient, factor in zip(coefficients, (a, v, arithmetic.sign(v)), strict=True):
                 if coefficient:
                     total = rate * (factor * arithmetic.number(coefficient, 0.0)) + total

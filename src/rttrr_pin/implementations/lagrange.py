@@ -30,7 +30,14 @@ from typing import TYPE_CHECKING
 from rttrr_pin.core.algebra import Scalar, Vector
 from rttrr_pin.core.dual import Dual, part_of, value_of
 from rttrr_pin.core.dynamics import bodies, joint_states
-from rttrr_pin.core.energy import drive_power, gyroscopic, kinetic_energy, moving_links, payload_power, potential_energy
+from rttrr_pin.core.energy import (
+    gyroscopic,
+    joint_effects_power,
+    kinetic_energy,
+    moving_links,
+    payload_power,
+    potential_energy,
+)
 from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import payloads_of
@@ -94,7 +101,7 @@ def lagrange(
     slope = _slope(model, links, q, v, arithmetic)
     turning = gyroscopic(model, v, [value_of(x) for x in p])
     states = joint_states(model, arithmetic, q, v, a)
-    effects = drive_power(model, arithmetic, states, joint_states(model, outer, q_o, v_o, a))
+    effects = joint_effects_power(model, arithmetic, states, joint_states(model, outer, q_o, v_o, a))
     surroundings = payload_power(payloads, moving)
     tau_joint = [value_of(part_of(effects, j)) for j in n]
     given = [value_of(part_of(surroundings, j)) for j in n]

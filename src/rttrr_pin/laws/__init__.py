@@ -3,5 +3,6 @@
 from __future__ import annotations
 
 from rttrr_pin.laws.run import LawReport, LawRow, check_laws
+from rttrr_pin.laws.table import LAWS, Law
 
-__all__ = ["LawReport", "LawRow", "check_laws"]
+__all__ = ["LAWS", "Law", "LawReport", "LawRow", "check_laws"]

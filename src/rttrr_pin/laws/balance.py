@@ -1,12 +1,11 @@
-"""Laws of motion, energy and momentum: derivatives by time, exact by duals, against what the recursion says.
+"""Laws of motion, energy and momentum: exact time derivatives, by dual numbers, against the results that are checked.
 
-Each function gives what the law says is zero. Nothing of the recursion's own accelerations or forces goes into the
-derivatives.
+Each function yields the residual of its law. The derivatives contain no acceleration and no force of the recursion.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import reduce
 
 from rttrr_pin.core.algebra import ZERO, Matrix, Scalar, Vector
@@ -14,8 +13,8 @@ from rttrr_pin.core.dual import part_of
 from rttrr_pin.core.dynamics import joint_states
 from rttrr_pin.core.energy import (
     angular_momentum,
-    drive_power,
     in_base_axes,
+    joint_effects_power,
     kinetic_energy,
     linear_momentum,
     now,
@@ -31,12 +30,7 @@ Wrench = tuple[Vector, Vector]
 """Force, and moment about the base's origin, in base axes."""
 
 
-def flat(vectors: Sequence[Vector]) -> list[Scalar]:
-    """The components of vectors, one after another."""
-    return [x for vector in vectors for x in vector]
-
-
-def kinematics(case: Case) -> Iterator[Scalar]:
+def joint_motion(case: Case) -> Iterator[Scalar]:
     """R' - R [w]x,  p' - R v,  w' - w_dot,  v' - v_dot of every joint."""
     q, v = case.flow
     states = joint_states(case.model, case.duals, q, v, case.a)
@@ -51,23 +45,23 @@ def kinematics(case: Case) -> Iterator[Scalar]:
 
 
 def power(case: Case) -> Iterator[Scalar]:
-    """The power tau . v, less d/dt (T + V), what the payload gets and what the joints take."""
+    """Tau . v - d/dt (T + V) - f_tool . v - n_tool . w - tau_joint . v."""
     states = joint_states(case.model, case.arithmetic, case.q, case.v, case.a)
     energy = kinetic_energy(case.links, case.moving) + potential_energy(case.links, case.moving, case.gravity)
-    driven: Scalar = 0
+    driving: Scalar = 0
     for force, rate in zip(case.result.tau, case.v, strict=True):
-        driven = force * rate + driven
-    given = payload_power(case.payloads, case.placed) + drive_power(case.model, case.arithmetic, states, states)
-    yield driven - part_of(energy, TIME) - given
+        driving = force * rate + driving
+    joints = joint_effects_power(case.model, case.arithmetic, states, states)
+    yield driving - part_of(energy, TIME) - payload_power(case.payloads, case.placed) - joints
 
 
 def base_force(case: Case) -> Iterator[Scalar]:
-    """What the base exerts, less d/dt of the linear momentum, weight and payload."""
+    """f_0 - d/dt P + M g - f_tool, in base axes."""
     yield from _base(case)[0]
 
 
 def base_moment(case: Case) -> Iterator[Scalar]:
-    """The same for moments and the angular momentum, about the base's origin."""
+    """n_0 - d/dt L + p_C x M g - n_tool - p x f_tool, about the base's origin."""
     yield from _base(case)[1]
 
 
@@ -84,36 +78,36 @@ def net_moment(case: Case) -> Iterator[Scalar]:
 
 
 def force_balance(case: Case) -> Iterator[Scalar]:
-    """f_i - sum of the children's f - f_tool - d/dt (M v_C) + M g of every link, in base axes."""
+    """f_i - sum f_c - f_tool - d/dt (M v_C) + M g of every link, in base axes."""
     for force, _ in _balances(case):
         yield from force
 
 
 def moment_balance(case: Case) -> Iterator[Scalar]:
-    """The same for moments and the angular momentum of the link, about the base's origin."""
+    """n_i - sum n_c - n_tool - d/dt (p_C x M v_C + I w) + p_C x M g of every link, about the base's origin."""
     for _, moment in _balances(case):
         yield from moment
 
 
 def _changes(case: Case) -> list[Wrench]:
-    """Of each link: d/dt of its linear and angular momentum, less what its weight does to them."""
+    """Of each link d/dt (M v_C) - M g and d/dt (p_C x M v_C + I w) - p_C x M g, in base axes."""
     changes = []
     for body, link, placed in zip(case.links, case.moving, case.placed, strict=True):
         weight = case.gravity * body.M
         P_dot, L_dot = rate_of(linear_momentum(body, link)), rate_of(angular_momentum(body, link))
-        changes.append((P_dot - weight, L_dot - placed.place_of(body.r_C).cross(weight)))
+        changes.append((P_dot - weight, L_dot - placed.position_of(body.r_C).cross(weight)))
     return changes
 
 
-def _across(case: Case) -> list[Wrench]:
-    """f_i, n_i of each link, turned and moved to the base."""
+def _joint_wrenches(case: Case) -> list[Wrench]:
+    """f_i, n_i of each link, in base axes about the base's origin."""
     forces = [link.R @ f for link, f in zip(case.placed, case.result.f, strict=True)]
     moments = [link.R @ n for link, n in zip(case.placed, case.result.n, strict=True)]
     return [(f, n + link.p.cross(f)) for link, f, n in zip(case.placed, forces, moments, strict=True)]
 
 
-def _given(case: Case) -> dict[int, Wrench]:
-    """The payloads by link, turned and moved to the base."""
+def _payloads(case: Case) -> dict[int, Wrench]:
+    """The payloads by link, in base axes about the base's origin."""
     total: dict[int, Wrench] = {}
     for payload in case.payloads:
         link = case.placed[payload.link]
@@ -124,23 +118,22 @@ def _given(case: Case) -> dict[int, Wrench]:
 
 
 def _balances(case: Case) -> list[Wrench]:
-    """What crosses the joint of each link, less what its children and its payload take and its momentum needs."""
-    across, given = _across(case), _given(case)
-    left = [list(wrench) for wrench in across]
+    """Residual of force and moment of each link."""
+    wrenches, payloads = _joint_wrenches(case), _payloads(case)
+    residuals = [list(wrench) for wrench in wrenches]
     for i, joint in enumerate(case.model.joints):
         if joint.parent >= 0:
-            left[joint.parent] = [x - y for x, y in zip(left[joint.parent], across[i], strict=True)]
+            residuals[joint.parent] = [x - y for x, y in zip(residuals[joint.parent], wrenches[i], strict=True)]
     for i, change in enumerate(_changes(case)):
-        for taken in (change, given.get(i, (ZERO, ZERO))):
-            left[i] = [x - y for x, y in zip(left[i], taken, strict=True)]
-    return [(f, n) for f, n in left]
+        for wrench in (change, payloads.get(i, (ZERO, ZERO))):
+            residuals[i] = [x - y for x, y in zip(residuals[i], wrench, strict=True)]
+    return [(f, n) for f, n in residuals]
 
 
 def _base(case: Case) -> Wrench:
-    """What the base exerts on the robot, less all that takes it."""
-    roots = [wrench for joint, wrench in zip(case.model.joints, _across(case), strict=True) if joint.parent < 0]
-    taken = [*_changes(case), *_given(case).values()]
+    """Residual of force and moment of the base on the whole robot."""
+    roots = [wrench for joint, wrench in zip(case.model.joints, _joint_wrenches(case), strict=True) if joint.parent < 0]
     f, n = (reduce(Vector.__add__, (wrench[k] for wrench in roots), ZERO) for k in (0, 1))
-    for change in taken:
-        f, n = f - change[0], n - change[1]
+    for wrench in (*_changes(case), *_payloads(case).values()):
+        f, n = f - wrench[0], n - wrench[1]
     return f, n

@@ -1,4 +1,4 @@
-"""What the laws of mechanics are tried on: a robot in motion, with what several laws look at computed once."""
+"""A robot in motion, on which laws are checked; what several laws need is computed once."""
 
 from __future__ import annotations
 
@@ -7,17 +7,18 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from rttrr_pin.core.algebra import ZERO, Scalar, Vector
-from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dual import Dual, part_of, value_of
 from rttrr_pin.core.dynamics import Result, bodies, dynamics
 from rttrr_pin.core.energy import LinkState, moving_links
 from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.newton_euler import Payload
-from rttrr_pin.core.payload import Load, payloads_of
+from rttrr_pin.core.payload import payloads_of
 from rttrr_pin.core.scalars import Arithmetic, columns
 from rttrr_pin.core.tangent import TIME, in_time, over_duals
+from rttrr_pin.core.wrench import LINK_QUANTITIES
 from rttrr_pin.exact.rounding import BOUNDED, Bounded, coordinate_scalars
+from rttrr_pin.implementations import Batch, Implementation, default_allowance
 
 Rows = list[list[Scalar]]
 
@@ -33,6 +34,8 @@ class Case:
         v: a scalar for each rate.
         a: a scalar for each acceleration.
         payloads: what the robot exerts on its surroundings.
+        subject: the quantities that a program gave for these states, of which only those are read that it gives; None
+            to check the reference recursion.
     """
 
     model: Model
@@ -41,16 +44,18 @@ class Case:
     v: Sequence[Scalar]
     a: Sequence[Scalar]
     payloads: Sequence[Payload]
+    subject: Result | None = None
 
     @classmethod
-    def bounded(cls, model: Model, q: Array, v: Array, a: Array, loads: Sequence[Load] = ()) -> Case:
-        """A batch of states in (value, bound) scalars; q (N, nq), v and a (N, nv)."""
-        v_, a_ = ([Bounded(column, 0.0) for column in columns(x)] for x in (v, a))
-        return cls(model, BOUNDED, coordinate_scalars(model, q), v_, a_, payloads_of(loads, BOUNDED))
+    def of(cls, batch: Batch, program: Implementation | None = None) -> Case:
+        """States in scalars (value, error bound), with the results of a program and its allowance for them."""
+        v, a = ([Bounded(column, 0.0) for column in columns(x)] for x in (batch.v, batch.a))
+        q, payloads = coordinate_scalars(batch.model, batch.q), payloads_of(batch.loads, BOUNDED)
+        return cls(batch.model, BOUNDED, q, v, a, payloads, None if program is None else _subject(batch, program))
 
     @property
     def at_rest(self) -> list[Scalar]:
-        """No rate, or no acceleration."""
+        """Rates or accelerations of zero."""
         return [0] * self.model.nv
 
     @cached_property
@@ -65,8 +70,8 @@ class Case:
 
     @cached_property
     def result(self) -> Result:
-        """What the specification says of these states."""
-        return self.forces()
+        """The results that are checked: those of the subject, or the reference recursion's."""
+        return self.forces() if self.subject is None else self.subject
 
     def forces(
         self,
@@ -76,7 +81,7 @@ class Case:
         links: Sequence[Body] | None = None,
         gravity: Vector | None = None,
     ) -> Result:
-        """What it says where something is otherwise."""
+        """The results of the reference recursion, with some of its inputs replaced."""
         return dynamics(
             self.model,
             self.arithmetic,
@@ -100,17 +105,17 @@ class Case:
 
     @cached_property
     def moving(self) -> list[LinkState]:
-        """The links as they move in time: duals."""
+        """Placements and velocities of the links as duals in time."""
         return moving_links(self.model, self.links, *self.flow, self.duals)
 
     @cached_property
     def placed(self) -> list[LinkState]:
-        """The links now."""
+        """Placements and velocities of the links at this instant."""
         return [x.now for x in self.moving]
 
     @cached_property
     def _unit_forces(self) -> Rows:
-        """[j][i]: tau_i for an acceleration of 1 along rate j, without gravity, rates and drives; duals in time."""
+        """[j][i]: tau_i for an acceleration of 1 along rate j alone, without gravity and friction; duals in time."""
         model, n = self.model.without_joint_effects(), self.model.nv
         units = [[int(i == j) for i in range(n)] for j in range(n)]
         q_t = self.flow[0]
@@ -123,12 +128,12 @@ class Case:
 
     @cached_property
     def mass_matrix_rate(self) -> Rows:
-        """Its time derivative."""
+        """The time derivative of M."""
         return [[part_of(column[i], TIME) for column in self._unit_forces] for i in range(self.model.nv)]
 
     @cached_property
     def kinetic_matrix(self) -> Rows:
-        """The same from the kinetic energy: d^2 T / dv_i dv_j = sum of M J_C^T J_C + J_w^T I J_w; no recursion."""
+        """M from the kinetic energy, d^2 T / dv_i dv_j = sum of M J_C^T J_C + J_w^T I J_w, without the recursion."""
         n = range(self.model.nv)
         v = [Dual(0, {j: 1}) for j in n]
         moving = moving_links(self.model, self.links, self.q, v, self.duals)
@@ -141,3 +146,16 @@ class Case:
                 for j, (P, L) in enumerate(impulses):
                     rows[i][j] = linear[i].dot(P) + angular[i].dot(L) + rows[i][j]
         return rows
+
+
+def _subject(batch: Batch, program: Implementation) -> Result:
+    """The results of a program; the bound on the norm of a vector bounds each of its components."""
+    evaluation = program.evaluate(batch)
+    values = evaluation.values
+    allowance = default_allowance(batch) if evaluation.allowance is None else evaluation.allowance
+    tau = map(Bounded, columns(values["tau"]), columns(allowance["tau"])) if "tau" in values else ()
+    vectors: dict[str, list[Vector]] = {key: [] for key in LINK_QUANTITIES}
+    for key in vectors.keys() & values.keys():
+        for i, bound in enumerate(columns(allowance[key])):
+            vectors[key].append(Vector(*(Bounded(x, bound) for x in columns(values[key][:, i]))))
+    return Result(list(tau), [], **vectors)

@@ -1,4 +1,4 @@
-"""Laws of the mass matrix: what the recursion's columns have in common with the kinetic energy."""
+"""Laws of the mass matrix, whose columns the recursion gives, and of the kinetic energy."""
 
 from __future__ import annotations
 
@@ -37,8 +37,8 @@ def of_kinetic_energy(case: Case) -> Iterator[Scalar]:
 def positive_definite(case: Case) -> Iterator[Scalar]:
     """The smallest eigenvalue of M, where it is negative.
 
-    Eigenvalues move by at most the norm of what M is off by (Weyl), and by what their computation rounds. Links without
-    mass make M semidefinite, so zero is let pass.
+    Eigenvalues change by at most the norm of the error of M (Weyl), and by the rounding of their computation. Links
+    without mass make M semidefinite, so zero passes.
     """
     if not case.model.nv:
         return
@@ -53,8 +53,8 @@ def skew(case: Case) -> Iterator[Scalar]:
     """S_ij + S_ji of S = M' - 2 C, with C the Coriolis matrix of the connection without torsion.
 
     The velocity forces c(q, v), a quadratic form in v, fix its symmetric part: C v = c and 2 C = dc/dv - M A, where A
-    is zero for rates that are derivatives of coordinates and A^T p the turning of the momenta p of twists
-    (`energy.gyroscopic`). Slips in C are slips in c = tau(q, v, 0) without gravity.
+    is zero for rates that are derivatives of coordinates and A^T p the gyroscopic forces of the momenta p of twists
+    (`energy.gyroscopic`). Errors in C are errors in c = tau(q, v, 0) without gravity.
     """
     n = range(case.model.nv)
     model = case.model.without_joint_effects()
@@ -62,8 +62,8 @@ def skew(case: Case) -> Iterator[Scalar]:
     c = dynamics(model, case.duals, case.q, v, case.at_rest, (), case.links, ZERO).tau
     S = []
     for i in n:
-        turned = gyroscopic(model, case.v, case.mass_matrix[i])
-        S.append([case.mass_matrix_rate[i][j] - part_of(c[i], j) + turned[j] for j in n])
+        turning = gyroscopic(model, case.v, case.mass_matrix[i])
+        S.append([case.mass_matrix_rate[i][j] - part_of(c[i], j) + turning[j] for j in n])
     for i in n:
         yield from (S[i][j] + S[j][i] for j in range(i + 1))
 
@@ -71,33 +71,33 @@ def skew(case: Case) -> Iterator[Scalar]:
 def forward(case: Case) -> Iterator[Scalar]:
     """M^-1 (tau - tau(q, v, 0)) - a, with M from the kinetic energy and the armatures, where M can be inverted.
 
-    For M x = r with M off by at most E and r by at most e, and the residual rho of the computed x:
+    For M x = r with an error of at most E in M and e in r, and the residual rho of the computed x:
     |x - a| <= |M^-1| (E |a| + e + |rho|), which is doubled, since the inverse is rounded too.
     """
     if not case.model.nv:
         return
     still = case.forces(a=case.at_rest).tau
-    driven = [x - y for x, y in zip(case.result.tau, still, strict=True)]
+    inertial = [x - y for x, y in zip(case.result.tau, still, strict=True)]
     rows = len(_rows(case))
-    r, e = values_and_bounds(driven, rows)
+    r, e = values_and_bounds(inertial, rows)
     a, _ = values_and_bounds(case.a, rows)
     M, E = _matrix(_with_armature(case), rows)
     if not (np.isfinite(M).all() and np.isfinite(r).all()):
         yield Bounded(np.full(rows, np.nan), 0.0)
         return
-    sound = np.linalg.eigvalsh(_mean(M))[:, 0] > _eigenvalue_error(M, E)
-    M = np.where(sound[:, None, None], M, np.eye(case.model.nv))
+    regular = np.linalg.eigvalsh(_mean(M))[:, 0] > _eigenvalue_error(M, E)
+    M = np.where(regular[:, None, None], M, np.eye(case.model.nv))
     inverse = np.asarray(np.linalg.inv(M), dtype=np.float64)
     x = _times(inverse, r)
     rounded = (case.model.nv + 2) * UNIT_ROUNDOFF * (_times(abs(M), abs(x)) + abs(r))
     off = _times(E, abs(a)) + e + abs(r - _times(M, x)) + rounded
     difference, bound = x - a, 2.0 * _times(abs(inverse), off) + 2 * UNIT_ROUNDOFF * abs(a)
     for j in range(case.model.nv):
-        yield Bounded(np.where(sound, difference[:, j], 0.0), bound[:, j])
+        yield Bounded(np.where(regular, difference[:, j], 0.0), bound[:, j])
 
 
 def _with_armature(case: Case) -> Rows:
-    """The matrix of the kinetic energy, with what the drives add to it."""
+    """The matrix of the kinetic energy with the armatures."""
     n = range(case.model.nv)
     rates = [Dual(0, {j: 1}) for j in n]
     states = joint_states(case.model, case.duals, case.q, rates, case.at_rest)
@@ -114,7 +114,7 @@ def _with_armature(case: Case) -> Rows:
 
 
 def _rows(case: Case) -> Array:
-    """The batch, of which all scalars are."""
+    """An array with the batch's number of states."""
     rate: Any = case.v[0]
     return np.atleast_1d(rate.value)
 
@@ -132,7 +132,7 @@ def _mean(M: Array) -> Array:
 
 
 def _eigenvalue_error(M: Array, error: Array) -> Array:
-    """How far computed eigenvalues can be from the true ones, (N,)."""
+    """A bound on the error of computed eigenvalues, (N,)."""
     rounded = EIGENVALUES * M.shape[-1] * UNIT_ROUNDOFF * np.linalg.norm(M, axis=(1, 2))
     total: Array = np.linalg.norm(error, axis=(1, 2)) + rounded
     return total

@@ -1,6 +1,6 @@
-"""The same robot with other link frames.
+"""One robot with other link frames.
 
-A frame may be turned at will where the joint's axis can be written in the new axes, and moved along what the joint
+A frame may be rotated at will where the joint's axis can be written in the new axes, and moved along what the joint
 leaves alone: anywhere on a prismatic or fixed joint, along the axis of a revolute one. Planar and floating joints keep
 theirs, since their rates are components in {i}.
 """
@@ -26,7 +26,7 @@ class Frame:
 
 
 def reframing(case: Case, turn: Matrix) -> list[Frame]:
-    """A new frame for each link, turned by `turn`, and moved where that may be."""
+    """A new frame for each link, rotated by `turn`, and moved where the joint allows it."""
     offset = Vector.of((0.25, -0.5, 0.125), lambda value: case.arithmetic.number(value, 0.0))
     frames = []
     for body in case.links:
@@ -36,16 +36,16 @@ def reframing(case: Case, turn: Matrix) -> list[Frame]:
 
 
 def reframed(case: Case, frames: Sequence[Frame]) -> Result:
-    """What the recursion says of the robot in its new frames, about their origins and in their axes.
+    """The results of the recursion in the new frames, about their origins and in their axes.
 
     With S, o the frame of the link and P, c that of its parent:
 
         R' = P^T R S,   p' = P^T (p + R o - c),   u' = S^T u,   r_C' = S^T (r_C - o),   I' = S^T I S
     """
-    here = Frame(IDENTITY, ZERO)
+    base = Frame(IDENTITY, ZERO)
     links = []
     for joint, body, frame in zip(case.model.joints, case.links, frames, strict=True):
-        links.append(_moved(body, frame, frames[joint.parent] if joint.parent >= 0 else here))
+        links.append(_moved(body, frame, frames[joint.parent] if joint.parent >= 0 else base))
     return case.forces(links=links, payloads=[_payload(case, x, frames[x.link]) for x in case.payloads])
 
 
@@ -62,7 +62,7 @@ def _moved(body: Body, frame: Frame, parent: Frame) -> Body:
 
 
 def _payload(case: Case, payload: Payload, frame: Frame) -> Payload:
-    """The same load about the new origin, in the axes that it is given in."""
+    """The payload about the new origin, in base axes or those of the new frame as it was."""
     if payload.in_base:
         arm = case.placed[payload.link].R @ frame.p
         return replace(payload, n=payload.n - arm.cross(payload.f))

@@ -1,10 +1,11 @@
-"""Try the laws of mechanics on many states of a robot: no other program is asked."""
+"""Check the laws of mechanics on many states of a robot, without another program."""
 
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable
+from dataclasses import asdict, dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -12,41 +13,55 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import blocks
 from rttrr_pin.core.inputs import whole_number
 from rttrr_pin.core.payload import Load, RandomPayload
-from rttrr_pin.core.wrench import Wrench
 from rttrr_pin.errors import InputError
 from rttrr_pin.exact.rounding import values_and_bounds
-from rttrr_pin.implementations import Batch
+from rttrr_pin.implementations import Batch, Implementation, label, make_implementation
+from rttrr_pin.implementations.registry import Source
 from rttrr_pin.laws.case import Case
 from rttrr_pin.laws.table import Law, chosen
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.compare import Worst
-from rttrr_pin.validation.comparison import described
+from rttrr_pin.validation.comparison import Payload, described, resolved
 from rttrr_pin.validation.states import LAST_STATE, Sampler
 
 BLOCK = 1024
-"""States tried at a time; the memory of a run is that of one block. With fewer, calls cost more than arithmetic."""
+"""States checked at a time: the memory of a run is that of one block."""
+
+RECURSION = "recursion"
+"""The subject that all laws can be checked on."""
 
 
 @dataclass(slots=True)
 class LawRow:
-    """What was seen of one law.
+    """The outcome for one law.
 
     Attributes:
-        law: which.
-        numbers: how many numbers of each state the law says are zero; none where it says nothing of this robot.
-        share: the largest of them as a share of what rounding can have made of zero, and its state.
-        violations: states in which one is beyond.
+        law: the law.
+        numbers: how many numbers of each state the law says are zero; 0 where it says nothing of this robot.
+        error_over_bound: the largest |residual| / error bound, and its state.
+        violations: states in which it exceeds 1.
     """
 
     law: Law
     numbers: int = 0
-    share: Worst = field(default_factory=Worst)
+    error_over_bound: Worst = field(default_factory=Worst)
     violations: int = 0
 
     @property
-    def holds(self) -> bool:
-        """Whether no state violates it."""
+    def passed(self) -> bool:
+        """Whether no state violates the law."""
         return self.violations == 0
+
+    def to_dict(self) -> dict[str, Any]:
+        """The row as data for JSON."""
+        return {
+            "name": self.law.name,
+            "statement": self.law.statement,
+            "passed": self.passed,
+            "numbers": self.numbers,
+            "error_over_bound": asdict(self.error_over_bound) if self.numbers else None,
+            "violations": self.violations,
+        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,8 +71,9 @@ class LawReport:
     Attributes:
         robot: its name.
         base: "fixed" or "floating".
-        n_states: how many states each law was tried on.
-        sampling: how they were drawn.
+        subject: name and version of the program that was checked.
+        n_states: how many states each law was checked on.
+        sampling: how they were drawn; "table" where a table of results brought them.
         seed: of the generator.
         payload: what the robot carried, in words.
         rows: one for each law, in the order of their ids.
@@ -66,6 +82,7 @@ class LawReport:
 
     robot: str
     base: str
+    subject: str
     n_states: int
     sampling: str
     seed: int
@@ -74,96 +91,150 @@ class LawReport:
     seconds: float
 
     @property
-    def holds(self) -> bool:
+    def passed(self) -> bool:
         """Whether every law holds in every state."""
-        return all(row.holds for row in self.rows)
+        return all(row.passed for row in self.rows)
+
+    @property
+    def violated(self) -> tuple[LawRow, ...]:
+        """The laws that do not hold in every state."""
+        return tuple(row for row in self.rows if not row.passed)
 
     @property
     def worst(self) -> LawRow:
-        """The law that comes closest to its bound, or lies furthest beyond."""
-        return max(self.rows, key=lambda row: row.share.value)
+        """The law whose residual comes closest to its bound, or lies furthest beyond."""
+        return max(self.rows, key=lambda row: row.error_over_bound.value)
+
+    def summary(self) -> str:
+        """The verdict in one sentence."""
+        checked = f"{self.subject} on {self.n_states:,} states of {self.robot}"
+        if self.passed:
+            return f"PASS {checked}: all {len(self.rows)} laws hold"
+        ids = ", ".join(row.law.id for row in self.violated)
+        return f"FAIL {checked}: {len(self.violated)} of {len(self.rows)} laws are violated, {ids}"
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as data for JSON."""
+        names = ("passed", "robot", "base", "subject", "n_states", "sampling", "seed", "payload", "seconds")
+        laws = {row.law.id: row.to_dict() for row in self.rows}
+        return {"schema": 1, **{name: getattr(self, name) for name in names}, "laws": laws}
 
 
 def check_laws(
     robot: Robot,
-    states: int = 1000,
+    subject: Source = RECURSION,
+    n_states: int = 1000,
     seed: int = 0,
     sampling: str = "uniform",
-    payload: Wrench | None = None,
+    payload: Payload = RandomPayload(),  # noqa: B008 - frozen
     select: Iterable[str] = (),
     progress: Callable[[int], None] | None = None,
 ) -> LawReport:
-    """Try the laws of mechanics on random states.
+    """Check the laws of mechanics on random states.
 
-    A law holds in a state where what it says is zero lies within its running error bound of zero; no tolerance is
-    chosen. A violation means that the dynamics are wrong, or that the robot cannot exist (M403 finds negative masses).
+    A law holds in a state if its residual lies within its running error bound of zero. A violation means that the
+    dynamics are wrong, or that the robot cannot exist (M403 finds negative masses).
 
     Args:
         robot: the robot.
-        states: how many.
-        seed: of the generator; the states are those that `validate` draws for the same seed and family.
+        subject: the program that is checked. Of the reference recursion, `"recursion"`, all laws are; of any other (see
+            `validate`) those that need nothing but its results, the power balance and the balances of the links.
+        n_states: how many states; of a table of results all of its own.
+        seed: of the generator; `validate` draws the same states for the same seed and sampling.
         sampling: how they are drawn, one of `SAMPLINGS`.
-        payload: None for a random one in each state, at the last link in its axes and at another in base axes; or a
-            wrench, the same in every state.
-        select: prefixes of the ids of the laws to try, such as `"M"`; none means all.
+        payload: None; a wrench, the same in every state; or `RandomPayload()`: another in each state, at its link (the
+            last one, if it names none) in link axes, and at a link further in, in base axes.
+        select: prefixes of the ids of the laws to check, such as `"M"`; none for all.
         progress: called after each block with the number of states done.
 
     Returns:
-        For each law the worst share of its bound, the state, and how many states violate it.
+        For each law the largest error / bound, the state, and how many states violate it.
 
     Raises:
-        InputError: an argument cannot be used, or the robot has no joint.
-        UnknownNameError: no family is called so, or a prefix fits no law.
+        InputError: an argument cannot be used, or no law can be checked.
+        ImplementationError: the subject is missing, refuses the robot, or dies.
+        UnknownNameError: there is no such sampling or law.
     """
     laws = chosen(select)
-    whole_number("states", states, 1, LAST_STATE, "10^15, since none would prove nothing")
+    whole_number("n_states", n_states, 1, LAST_STATE, "10^15, since none would prove nothing")
     if not isinstance(robot, Robot):
         raise InputError(f"robot is a {type(robot).__name__}: pass a Robot, such as rttrr_pin.load({robot!r})")
     if not robot.model.links:
         raise InputError(f"robot {robot.name!r} has no joint, so that no law says anything of it")
     start = time.perf_counter()
-    load = RandomPayload(robot.link_names[-1]) if payload is None else robot.load_of(payload)
-    sampler = Sampler(robot.model, sampling, seed, load)
-    rows = tuple(LawRow(law) for law in laws)
-    for part in blocks(states, BLOCK):
-        drawn = sampler.draw(part.start, part.stop - part.start)
-        loads = _loads(robot, drawn) if payload is None else drawn.loads
-        with np.errstate(all="ignore"):  # what overflows is no zero, and is counted as a violation
-            _try(rows, Case.bounded(robot.model, drawn.q, drawn.v, drawn.a, loads), drawn.first, len(drawn.q))
+    program = make_implementation(subject, robot.model)
+    whole = subject == RECURSION
+    rows = tuple(LawRow(law) for law in (laws if whole else _checkable(laws, program)))
+    table: Batch | None = program.states() if hasattr(program, "states") else None
+    if table is not None:
+        n_states, sampling, payload = len(table), "table", None
+    else:
+        sampler = Sampler(robot.model, sampling, seed, _resolved(robot, payload))
+    for part in blocks(n_states, BLOCK):
+        batch = _part(table, part) if table is not None else sampler.draw(part.start, part.stop - part.start)
+        if isinstance(payload, RandomPayload):
+            batch = replace(batch, loads=(*batch.loads, _in_base_axes(robot, batch.loads[0])))
+        with np.errstate(all="ignore"):  # what overflows is not zero, and counts as a violation
+            _check(rows, Case.of(batch, None if whole else program), batch)
         if progress is not None:
             progress(part.stop)
     return LawReport(
         robot=robot.name,
         base="floating" if robot.model.floating else "fixed",
-        n_states=states,
+        subject=label(program),
+        n_states=n_states,
         sampling=sampling,
         seed=seed,
-        payload=described(payload or RandomPayload()),
+        payload=described(payload) if table is None else "that of the table",
         rows=rows,
         seconds=time.perf_counter() - start,
     )
 
 
-def _loads(robot: Robot, drawn: Batch) -> Sequence[Load]:
-    """The random load of each state, and another in base axes at a link further in."""
-    (load,) = drawn.loads
-    return load, Load(len(robot.link_names) // 2, load.f[:, ::-1], load.n[:, ::-1], in_base=True)
-
-
-def _try(rows: Iterable[LawRow], case: Case, first: int, count: int) -> None:
-    """Every law on consecutive states."""
-    for row in rows:
-        ratios = error_over_bound(row.law, case, count)
-        row.numbers = ratios.shape[1]
-        if row.numbers:
-            row.share.see(ratios.max(axis=1), first)
-            row.violations += int((ratios.max(axis=1) > 1.0).sum())
-
-
 def error_over_bound(law: Law, case: Case, count: int) -> Array:
-    """What the law says is zero, over its error bound, (N, numbers); infinite where it is not finite."""
+    """|residual| / error bound of each number, (N, numbers); infinite where one is not finite."""
     values, bounds = values_and_bounds(list(law.residual(case)), count)
     with np.errstate(all="ignore"):
         ratios = np.where(values == 0.0, 0.0, np.abs(values) / bounds)
     ratios[np.isnan(ratios) | ~np.isfinite(bounds)] = np.inf
     return ratios
+
+
+def _check(rows: Iterable[LawRow], case: Case, batch: Batch) -> None:
+    """Take in consecutive states."""
+    for row in rows:
+        ratios = error_over_bound(row.law, case, len(batch))
+        row.numbers = ratios.shape[1]
+        if row.numbers:
+            largest = ratios.max(axis=1)
+            row.error_over_bound.see(largest, batch.first)
+            row.violations += int((largest > 1.0).sum())
+
+
+def _checkable(laws: Iterable[Law], program: Implementation) -> list[Law]:
+    """The laws that need nothing of a program but what it gives."""
+    checkable = [law for law in laws if law.reads and set(law.reads) <= set(program.quantities)]
+    if not checkable:
+        raise InputError(
+            f"none of these laws can be checked on {program.name}, which gives {', '.join(program.quantities)}: "
+            "select E or B, or check the recursion"
+        )
+    return checkable
+
+
+def _resolved(robot: Robot, payload: Payload) -> Load | RandomPayload | None:
+    """For the sampler; a random payload without a link acts at the last one, which every robot has."""
+    if isinstance(payload, RandomPayload) and payload.link is None:
+        return replace(payload, link=robot.link_names[-1])
+    return resolved(robot, payload)
+
+
+def _in_base_axes(robot: Robot, load: Load) -> Load:
+    """Another random load, at a link further in."""
+    return Load(len(robot.link_names) // 2, load.f[:, ::-1], load.n[:, ::-1], in_base=True)
+
+
+def _part(table: Batch, part: slice) -> Batch:
+    """Some states of a table."""
+    loads = tuple(load.block(part) for load in table.loads)
+    return Batch(table.model, table.q[part], table.v[part], table.a[part], loads, part.start)

@@ -1,12 +1,12 @@
-"""Laws that compare the recursion with itself: linearity, invariance, scaling.
+"""Laws that compare results of the recursion: linearity, invariance, scaling.
 
-Each states what another motion, another field, another description of the same robot must do to the forces. Factors and
-vectors are arbitrary, and exact in binary.
+Each says how another motion, another field or another description of the robot changes the forces. Factors and vectors
+are arbitrary, and exact in binary.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from rttrr_pin.core.algebra import ZERO, Matrix, Scalar, Vector
@@ -50,7 +50,7 @@ def in_inertia(case: Case) -> Iterator[Scalar]:
 
 
 def under_base(case: Case) -> Iterator[Scalar]:
-    """All quantities, less those on a base frame that is moved and turned, gravity and payloads with it."""
+    """All quantities, less those on a base frame that is moved and rotated, gravity and payloads with it."""
     number = case.arithmetic.number
     p = Vector.of((0.75, -0.5, 1.25), lambda value: number(value, 0.0))
     R = _turn(case, 0.875, (0, 0, 1)) @ _turn(case, -0.625, (1, 0, 0))
@@ -63,7 +63,7 @@ def under_base(case: Case) -> Iterator[Scalar]:
 
 
 def under_frames(case: Case) -> Iterator[Scalar]:
-    """All quantities, less those in link frames that are turned, and moved as far as their joint lets them."""
+    """All quantities, less those in link frames that are rotated, and moved as far as their joint allows."""
     turn = _turn(case, 0.375, (0, 1, 0)) @ _turn(case, 1.125, (0, 0, 1))
     frames = reframing(case, turn)
     other = reframed(case, frames)
@@ -77,13 +77,13 @@ def under_frames(case: Case) -> Iterator[Scalar]:
 
 
 def under_mass(case: Case) -> Iterator[Scalar]:
-    """All quantities times s, less those at s times the masses, tensors and payloads; of tau what crosses the joint."""
+    """All quantities times s, less those at s times the masses, tensors and payloads; tau without tau_joint."""
     links = [replace(body, M=body.M * SCALE, I=body.I * SCALE) for body in case.links]
     yield from _scaled(case.result, case.forces(links=links, payloads=_times(case.payloads, SCALE)), SCALE)
 
 
 def under_time(case: Case) -> Iterator[Scalar]:
-    """All quantities times s^2, less those s times as fast, at s^2 times field and payloads; of tau likewise."""
+    """All quantities times s^2, less those s times as fast, at s^2 times field and payloads; tau without tau_joint."""
     v, a = [x * SCALE for x in case.v], [x * SCALE**2 for x in case.a]
     faster = case.forces(v, a, _times(case.payloads, SCALE**2), gravity=case.gravity * SCALE**2)
     yield from _scaled(case.result, faster, SCALE**2)
@@ -93,33 +93,21 @@ def _superposed(
     both: Result, one: Result, other: Result, none: Result, keys: Sequence[str] = LINK_QUANTITIES
 ) -> Iterator[Scalar]:
     """Both - one - other + none."""
-    rows = (_numbers(result, keys) for result in (both, one, other, none))
+    rows = (result.scalars(("tau", *keys)) for result in (both, one, other, none))
     for x, y, z, zero in zip(*rows, strict=True):
         yield x - y - z + zero
 
 
 def _differences(one: Result, other: Result) -> Iterator[Scalar]:
-    for x, y in zip(_numbers(one), _numbers(other), strict=True):
+    for x, y in zip(one.scalars(), other.scalars(), strict=True):
         yield x - y
 
 
 def _scaled(result: Result, other: Result, factor: int) -> Iterator[Scalar]:
-    """Factor times the one, less the other."""
-    pairs = ((result.tau, result.tau_joint), (other.tau, other.tau_joint))
-    across, expected = ([x - own for x, own in zip(tau, taken, strict=True)] for tau, taken in pairs)
-    for x, y in zip(across, expected, strict=True):
-        yield x * factor - y
-    for key in LINK_QUANTITIES:
-        for mine, theirs in zip(getattr(result, key), getattr(other, key), strict=True):
-            yield from mine * factor - theirs
-
-
-def _numbers(result: Result, keys: Iterable[str] = LINK_QUANTITIES) -> Iterator[Scalar]:
-    """Tau and the components of the other quantities."""
-    yield from result.tau
-    for key in keys:
-        for vector in getattr(result, key):
-            yield from vector
+    """Factor times the one, less the other; tau without tau_joint."""
+    one, scaled = ([x - own for x, own in zip(r.tau, r.tau_joint, strict=True)] for r in (result, other))
+    pairs = zip((*one, *result.scalars(LINK_QUANTITIES)), (*scaled, *other.scalars(LINK_QUANTITIES)), strict=True)
+    yield from (x * factor - y for x, y in pairs)
 
 
 def _times(payloads: Sequence[Payload], factor: int) -> list[Payload]:
