@@ -138,11 +138,11 @@ def test_every_law_is_violated_by_an_error_that_breaks_it(tree: Robot, law: str)
 
 
 def test_every_error_is_found_by_a_law(tree: Robot) -> None:
-    """Also those in the tenth digit of one term; laws that take long come last."""
+    """Also those in the tenth digit of one term; without the laws of the mass matrix, which take long."""
     batch = Sampler(tree.model, payload=RandomPayload(tree.link_names[-1])).draw(0, 1)
     (load,) = batch.loads
     batch = replace(batch, loads=(load, Load(4, -load.f, load.n, in_base=True)))
-    laws = sorted(LAWS, key=lambda law: "EBKSLIM".index(law.id[0]))
+    laws = sorted((law for law in LAWS if law.id[0] != "M"), key=lambda law: "EBKSLI".index(law.id[0]))
 
     def found(error: Mutant) -> bool:
         with planted(error):
