@@ -162,17 +162,17 @@ def bounds() -> Lines:
 
 
 def errors() -> Lines:
-    data = result("umpire")
+    data = result("accuracy")
     rows = []
     for name, robot in data["robots"].items():
         eps = robot["errors_eps"]
-        for quantity, ours in eps["kernel"].items():
+        for quantity, kernel in eps["kernel"].items():
             nearer, farther = (100 * eps[f"{who}_nearer"][quantity] for who in ("kernel", "pinocchio"))
-            both = (_spread(figures) for figures in (ours, eps["pinocchio"][quantity]))
+            both = (_spread(figures) for figures in (kernel, eps["pinocchio"][quantity]))
             rows.append((name, quantity, *both, f"{nearer:.0f} %; {farther:.0f} %"))
     return [
         "Distance from the true value in eps of the norm of the true vector, of the link that is farthest off, in "
-        f"{data['states']:,} uniform states ({measured(data, 'umpire')}): median / 99.9 % / worst.",
+        f"{data['states']:,} uniform states ({measured(data, 'accuracy')}): median / 99.9 % / worst.",
         "",
         *table(["", "", "rttrr-pin", "Pinocchio", "states in which rttrr-pin is nearer; farther"], rows),
     ]

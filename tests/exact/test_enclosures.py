@@ -1,4 +1,4 @@
-"""The umpire: every enclosure holds the true value, is as narrow as doubles allow, and is of the numbers it says."""
+"""Every enclosure holds the true value, is as narrow as doubles allow, and is of the parameters that it names."""
 
 from __future__ import annotations
 

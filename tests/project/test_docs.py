@@ -129,7 +129,7 @@ def test_the_saved_laws_hold_on_a_thousand_trees() -> None:
     result = saved("laws")
     assert (result["trees"], result["states_per_tree"]) == (1000, 1000)
     assert result["violations"] == []
-    assert all(law["violations"] == 0 and law["worst_share_of_bound"] <= 1.0 for law in result["laws"].values())
+    assert all(law["violations"] == 0 and law["worst_error_over_bound"] <= 1.0 for law in result["laws"].values())
 
 
 def test_every_equation_number_cited_exists() -> None:

@@ -59,7 +59,7 @@ class Function:
         """What the function returns, state by state or at once."""
         if batch.loads:
             raise ImplementationError(
-                f"{self.name} takes q, v, a and no payload: leave the payload out, or write an Implementation"
+                f"{self.name} takes q, v, a and no payload: pass payload=None, or write an Implementation"
             )
         if self.takes_batches:
             return Evaluation(self._checked(self._call(batch.first, batch.q, batch.v, batch.a), (len(batch),)))
