@@ -8,6 +8,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import rttrr_pin
@@ -262,6 +263,21 @@ def test_a_function_of_the_user_is_checked_without_another_program(rttrr: Robot)
     assert [broken(report) for report in reports] == [[], ["E201"]]
     assert reports[1].rows[0].violations == 20
     assert reports[1].subject == "without_velocities"
+
+
+def test_a_table_of_results_is_checked_on_its_own_states(rttrr: Robot, tmp_path: Path) -> None:
+    batch = Sampler(rttrr.model).draw(0, 3)
+    tau = rttrr.inverse_dynamics(batch.q, batch.v, batch.a).tau
+    names = [f"{key}_{name}" for key in ("q", "v", "a", "tau") for name in rttrr.joint_names]
+    table = np.hstack([batch.q, batch.v, batch.a, tau])
+    table[1, -1] += 1e-6
+    path = tmp_path / "results.csv"
+    np.savetxt(path, table, "%.17g", ",", header=",".join(names), comments="")
+    report = check_laws(rttrr, path, payload=None)
+    assert (report.n_states, report.sampling) == (3, "table")
+    assert [(row.law.id, row.violations) for row in report.rows] == [("E201", 1)]
+    with pytest.raises(InputError, match="no random payload"):
+        check_laws(rttrr, path)
 
 
 # The command

@@ -21,7 +21,7 @@ from rttrr_pin.laws.case import Case
 from rttrr_pin.laws.table import Law, chosen
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.compare import Worst
-from rttrr_pin.validation.comparison import Payload, described, resolved
+from rttrr_pin.validation.comparison import Payload, described, resolved, table_of
 from rttrr_pin.validation.states import LAST_STATE, Sampler
 
 BLOCK = 1024
@@ -165,11 +165,10 @@ def check_laws(
     program = make_implementation(subject, robot.model)
     whole = subject == RECURSION
     rows = tuple(LawRow(law) for law in (laws if whole else _checkable(laws, program)))
-    table: Batch | None = program.states() if hasattr(program, "states") else None
+    load = _resolved(robot, payload)
+    sampler, table = Sampler(robot.model, sampling, seed, load), table_of([program], load)
     if table is not None:
-        n_states, sampling, payload = len(table), "table", None
-    else:
-        sampler = Sampler(robot.model, sampling, seed, _resolved(robot, payload))
+        n_states = len(table)
     for part in blocks(n_states, BLOCK):
         batch = _part(table, part) if table is not None else sampler.draw(part.start, part.stop - part.start)
         if isinstance(payload, RandomPayload):
@@ -183,9 +182,9 @@ def check_laws(
         base="floating" if robot.model.floating else "fixed",
         subject=label(program),
         n_states=n_states,
-        sampling=sampling,
+        sampling=sampling if table is None else "table",
         seed=seed,
-        payload=described(payload) if table is None else "that of the table",
+        payload=described(payload),
         rows=rows,
         seconds=time.perf_counter() - start,
     )

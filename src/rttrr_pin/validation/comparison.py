@@ -79,7 +79,7 @@ class Run:
                     f"{', '.join(other.quantities)}: there is nothing to compare"
                 )
             comparisons.append(Comparison(model, common))
-        return cls(model, sampler, judged, others, tuple(comparisons), _table_of([judged, *others], load))
+        return cls(model, sampler, judged, others, tuple(comparisons), table_of([judged, *others], load))
 
     @property
     def rows(self) -> list[tuple[Implementation, Row]]:
@@ -126,7 +126,7 @@ class Run:
             return adjudicate(batch, list(zip(names, results, strict=True)))
 
 
-def _table_of(programs: list[Implementation], load: Load | RandomPayload | None) -> Batch | None:
+def table_of(programs: list[Implementation], load: Load | RandomPayload | None) -> Batch | None:
     """The states of the table among the programs, with the payload that its results were computed with."""
     tables = [program for program in programs if hasattr(program, "states")]
     if not tables:
@@ -138,7 +138,7 @@ def _table_of(programs: list[Implementation], load: Load | RandomPayload | None)
             raise InputError(f"{tables[0].name} and {table.name} are of different states: compare them one by one")
     if isinstance(load, RandomPayload):
         raise InputError(
-            f"{tables[0].name} has its own states, and no random payload: pass the wrench it was made with"
+            f"{tables[0].name} has its own states, and no random payload: pass the wrench it was made with, or none"
         )
     whole: Batch = replace(first, loads=() if load is None else (load,))
     return whole
