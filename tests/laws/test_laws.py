@@ -112,8 +112,8 @@ BREAKS = {
 """For each law an error in the recursion that breaks it."""
 
 UNSEEN = {
-    "_mimicked: drop offset": "the coordinate of a joint that follows another is what this function says",
-    "_mimicked: negate offset": "likewise",
+    "mimicked: drop offset": "the coordinate of a joint that follows another is what this function says",
+    "mimicked: negate offset": "likewise",
     "Planar.motion: drop body.p": "it makes another robot; I602 sees it where the frame that carries the joint may move",
     "Planar.motion: negate body.p": "likewise",
 }

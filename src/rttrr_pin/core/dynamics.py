@@ -125,12 +125,12 @@ def joint_states(
         own[i] = JointState(list(islice(q_, nq)), list(islice(v_, nv)), list(islice(a_, nv)))
     at_rest = JointState((), (), ())
     return [
-        own.get(i, at_rest) if joint.mimic is None else _mimicked(joint.mimic, own[joint.mimic.joint], arithmetic)
+        own.get(i, at_rest) if joint.mimic is None else mimicked(joint.mimic, own[joint.mimic.joint], arithmetic)
         for i, joint in enumerate(model.joints)
     ]
 
 
-def _mimicked(mimic: Mimic, followed: JointState, arithmetic: Arithmetic) -> JointState:
+def mimicked(mimic: Mimic, followed: JointState, arithmetic: Arithmetic) -> JointState:
     """The state of a mimic joint: multiplier q + offset, and its time derivatives."""
     rounded = UNIT_ROUNDOFF if mimic.rounded else 0.0
     multiplier, offset = (arithmetic.number(x, rounded * abs(x)) for x in (mimic.multiplier, mimic.offset))

@@ -8,13 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.dynamics import generalised_forces, joint_effects, mimicked
 from rttrr_pin.core.joint import JointEffects, Mimic
 from rttrr_pin.core.joints import JointType
+from rttrr_pin.core.joints.base import JointState
 from rttrr_pin.core.model import Model
+from rttrr_pin.core.scalars import FLOAT
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,10 +46,10 @@ class LibraryJoint:
     def own(self, q: Array, v: Array, a: Array) -> tuple[Array, Array, Array]:
         """Its coordinates, rates and accelerations from ours, (N, nq) and (N, nv): a follower's from its leader's."""
         q, v, a = q[:, self.own_q], v[:, self.own_v], a[:, self.own_v]
-        if self.mimic is None:
-            return q, v, a
-        m = self.mimic.multiplier
-        return m * q + self.mimic.offset, m * v, m * a
+        if self.mimic is not None:
+            state: Any = mimicked(self.mimic, JointState([q], [v], [a]), FLOAT)
+            (q,), (v,), (a,) = state.q, state.v, state.a
+        return q, v, a
 
 
 def own_slices(model: Model) -> list[tuple[slice, slice]]:
@@ -60,16 +64,19 @@ def own_slices(model: Model) -> list[tuple[slice, slice]]:
     return [found.get(joint.mimic.joint if joint.mimic else i, none) for i, joint in enumerate(model.joints)]
 
 
-def friction(effects: JointEffects, v: Array) -> Array:
-    """Damping v + friction sign(v), as `JointEffects` has it."""
-    return effects.damping * v + effects.friction * np.sign(v)
+def effects_force(effects: JointEffects, v: Array, a: Array) -> Array:
+    """The force that a joint takes itself at rates and accelerations, (N, nv) each."""
+    force: Any
+    (force,) = joint_effects(effects, JointState((), [v], [a]), FLOAT)
+    out: Array = np.zeros_like(v) + force
+    return out
 
 
-def reduce_forces(joints: Sequence[LibraryJoint], forces: Array) -> Array:
-    """Forces of all joints as forces of those that follow no other: a follower adds its multiplier times its own."""
-    nv = max((joint.own_v.stop for joint in joints), default=0)
-    out = np.zeros((len(forces), nv))
-    for joint in joints:
-        weight = 1.0 if joint.mimic is None else joint.mimic.multiplier
-        out[:, joint.own_v] += weight * forces[:, joint.v]
+def reduce_forces(model: Model, joints: Sequence[LibraryJoint], forces: Array) -> Array:
+    """Forces of a library's joints, (N, its nv), as forces along the degrees of freedom of the robot, (N, nv)."""
+    columns = iter([*forces[:, joint.v].T] for joint in joints)
+    by_joint: list[Any] = [next(columns) if joint.nv else [] for joint in model.joints]
+    out = np.empty((len(forces), model.nv))
+    for k, force in enumerate(generalised_forces(model, FLOAT, by_joint)):
+        out[:, k] = np.asarray(force)
     return out

@@ -36,7 +36,7 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.implementations.allowance import of_library
-from rttrr_pin.implementations.joint_maps import LibraryJoint, friction, reduce_forces
+from rttrr_pin.implementations.joint_maps import LibraryJoint, effects_force, reduce_forces
 from rttrr_pin.implementations.mujoco_model import PREFIX, build, mujoco_joints, rotation_of
 from rttrr_pin.implementations.mujoco_rounding import rounding
 from rttrr_pin.implementations.protocol import Batch, Evaluation
@@ -112,8 +112,9 @@ class Mujoco:
         tau, own = motion.in_links(self.joints, theirs), np.zeros_like(theirs)
         for joint in self.joints:
             _, rates, accelerations = joint.own(q, v, a)
-            own[:, joint.v] = joint.effects.armature * accelerations + friction(joint.effects, rates)
-        return reduce_forces(self.joints, tau + own), reduce_forces(self.joints, own)
+            own[:, joint.v] = effects_force(joint.effects, rates, accelerations)
+        whole, own = (reduce_forces(self.model, self.joints, x) for x in (tau + own, own))
+        return whole, own
 
     def _net(self, record: Record) -> tuple[Array, Array]:
         """F, N: mass times acceleration of the centre of mass, and Euler's equation about it."""

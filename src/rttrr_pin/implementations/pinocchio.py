@@ -83,7 +83,9 @@ class Pinocchio:
         record = self._run(motion, turned)
         F, N = self._net(record)
         f, n = self._across_joints(record, F, N, turned)
-        tau, tau_joint = (reduce_forces(self.joints, x) for x in driving_forces(self.joints, record.tau, motion))
+        tau, tau_joint = (
+            reduce_forces(self.model, self.joints, x) for x in driving_forces(self.joints, record.tau, motion)
+        )
         values = {"tau": tau, "F": F, "N": N, "f": f, "n": n}
         cancelling = self._rounding(record, motion, F, turned)
         return Evaluation(values, of_library(batch, values, tau_joint, cancelling), tau_joint)

@@ -14,7 +14,7 @@ driven along, and their forces are summed up by virtual work.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -22,7 +22,7 @@ import numpy as np
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joints import CONTINUOUS, PLANAR
 from rttrr_pin.core.model import Model
-from rttrr_pin.implementations.joint_maps import LibraryJoint, friction, own_slices
+from rttrr_pin.implementations.joint_maps import LibraryJoint, effects_force, own_slices
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,13 +72,11 @@ def expand(joints: Sequence[PinJoint], pin_model: Any, q: Array, v: Array, a: Ar
 
 def driving_forces(joints: Sequence[PinJoint], tau: Array, motion: Motion) -> tuple[Array, Array]:
     """Tau with friction, which `rnea` leaves out (armature is in it), and the part that the joints take themselves."""
-    own = np.zeros_like(tau)
-    total = tau.copy()
+    own, total = np.zeros_like(tau), tau.copy()
     for joint in joints:
         v, a = motion.v[:, joint.v], motion.a[:, joint.v]
-        resisting = friction(joint.effects, v)
-        own[:, joint.v] = joint.effects.armature * a + resisting
-        total[:, joint.v] += resisting
+        own[:, joint.v] = effects_force(joint.effects, v, a)
+        total[:, joint.v] += effects_force(replace(joint.effects, armature=0.0), v, a)
     return total, own
 
 
