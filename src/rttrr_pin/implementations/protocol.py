@@ -28,6 +28,7 @@ class Batch:
         a: accelerations, (N, nv).
         loads: payloads.
         first: index of the first state, for messages.
+        compiled: whether bounds are to be compiled, since the kernel takes part.
     """
 
     model: Model
@@ -36,6 +37,7 @@ class Batch:
     a: Array
     loads: tuple[Load, ...] = ()
     first: int = 0
+    compiled: bool = False
 
     def __len__(self) -> int:
         return len(self.q)
@@ -48,8 +50,8 @@ class Batch:
 
     @cached_property
     def bounds(self) -> LinkWrenches:
-        """A running error bound for the formulas of the recursion: compiled for small robots, else from `recursion`."""
-        compiled = compiled_bounds(self.model, self.q, self.v, self.a, self.loads)
+        """A running error bound for the formulas of the recursion, compiled or from `recursion`."""
+        compiled = compiled_bounds(self.model, self.q, self.v, self.a, self.loads) if self.compiled else None
         return self.recursion[1] if compiled is None else compiled
 
 

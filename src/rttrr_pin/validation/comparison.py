@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, replace, replace
 
 import numpy as np
 
@@ -89,11 +89,13 @@ class Run:
 
     def states(self, first: int, count: int) -> Batch:
         """States of the table, or drawn ones."""
+        compiled = any(program.name == "kernel" for program in (self.subject, *self.references))
         if self.table is None:
-            return self.sampler.draw(first, count)
+            return replace(self.sampler.draw(first, count), compiled=compiled)
         part = slice(first, first + count)
         loads = tuple(load.block(part) for load in self.table.loads)
-        return Batch(self.model, self.table.q[part], self.table.v[part], self.table.a[part], loads, first)
+        table = self.table
+        return Batch(self.model, table.q[part], table.v[part], table.a[part], loads, first, compiled)
 
     def evaluate(self, batch: Batch) -> list[Evaluation]:
         """What each program makes of a batch, the subject first; what overflows is shown later, with its state."""
