@@ -118,22 +118,22 @@ class EquationError(RttrrError):
 
 
 class ImplementationError(RttrrError):
-    """A library that serves as an oracle is missing, or cannot take this robot."""
+    """A program to compare with is missing, or cannot take this robot."""
 
 
 class ModelMismatchError(ImplementationError):
-    """The model that an oracle built from the file is not what the file says.
+    """The model that a library built from the file is not what the file says.
 
     Attributes:
         differences: one line for each number that differs, with the link or joint it belongs to.
     """
 
-    def __init__(self, oracle: str, differences: Iterable[str]) -> None:
-        self.oracle, self.differences = oracle, tuple(differences)
+    def __init__(self, library: str, differences: Iterable[str]) -> None:
+        self.library, self.differences = library, tuple(differences)
         shown = "\n  ".join(self.differences[:12])
         more = f"\n  and {len(self.differences) - 12} more" if len(self.differences) > 12 else ""
         super().__init__(
-            f"{oracle} built another model than the file describes, so comparing would mislead:\n  {shown}{more}"
+            f"{library} built another model than the file describes, so comparing would mislead:\n  {shown}{more}"
         )
 
 

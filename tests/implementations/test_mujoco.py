@@ -211,7 +211,7 @@ def test_a_model_that_differs_from_the_file_is_an_error_that_names_the_link(rttr
     tamper, named = KNOWN[case]
     with pytest.raises(ModelMismatchError, match=named) as caught:
         make_implementation("mujoco", tamper(rttrr.model))
-    assert caught.value.oracle == "MuJoCo" and len(caught.value.differences) == 1
+    assert caught.value.library == "MuJoCo" and len(caught.value.differences) == 1
 
 
 @pytest.mark.parametrize("mimic", [Mimic(0, -0.7, 0.2), Mimic(0, 0.7, 0.3), Mimic(1, 0.7, 0.2)], ids=str)

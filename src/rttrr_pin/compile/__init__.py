@@ -1,8 +1,8 @@
 """One robot, one compiled program.
 
-The specification runs once on scalars that record (`trace`), what they recorded is made shorter (`simplify`), and an
+The reference recursion runs once on scalars that record (`trace`), its sums are ordered (`summation`), and an
 emitter turns it into machine code (`emit`), which is kept on disk (`cache`). Robots too large for that (`build`) have
-each kind of step of the specification recorded once (`outliner`), and become a table of calls (`schedule`, `columns`).
+each kind of step of the reference recursion recorded once (`outliner`), and become a table of calls (`call_program`, `register_allocation`).
 """
 
 from rttrr_pin.compile.kernel import Kernel

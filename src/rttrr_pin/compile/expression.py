@@ -1,6 +1,6 @@
 """The tracer: a scalar whose operations are recorded, and shared, as an expression graph.
 
-Run on these scalars, the specification leaves behind the straight-line program of one robot. Every operation goes
+Run on these scalars, the reference recursion leaves behind the straight-line program of one robot. Every operation goes
 through one constructor, which folds what the robot's numbers decide (a product with 0 or 1, a sum of constants, a
 sign) and returns the node that is there already if the same operation was recorded before (hash-consing), so that
 common subexpressions are found as they arise. What no output needs is never emitted.

@@ -95,7 +95,7 @@ class Program(Widths):
         """The nodes that are needed, each behind what it takes.
 
         What depends on no finished vector, that is where the links are placed, comes first: compiled so, Panda and
-        Talos need fewer instructions than link by link, as the specification has it.
+        Talos need fewer instructions than link by link, as the reference recursion has it.
         """
         nodes = self.graph.reachable(self.results)
         behind: set[int] = set()

@@ -23,7 +23,7 @@ def arranged(
         outputs: the arrays that are written.
 
     Returns:
-        Calls in the order in which the specification took the steps.
+        Calls in the order in which the reference recursion took the steps.
     """
     taken = outliner.needed(results)
     steps = list(dict.fromkeys((*STANDING, *(one.recorded.step for one in taken))))

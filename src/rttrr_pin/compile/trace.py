@@ -1,4 +1,4 @@
-"""From a robot to its program: the specification, run on scalars that record."""
+"""From a robot to its program: the reference recursion, run on scalars that record."""
 
 from __future__ import annotations
 
@@ -70,7 +70,7 @@ def record(
     payloads: Sequence[PayloadSlot],
     regrouped: bool = True,
 ) -> tuple[int, ...]:
-    """Run the specification on nodes of a graph, whose first inputs are the numbers of `inputs_read`.
+    """Run the reference recursion on nodes of a graph, whose first inputs are the numbers of `inputs_read`.
 
     Args:
         graph: where to record.

@@ -1,4 +1,4 @@
-"""What an oracle built, held against the file: a line for each number that differs."""
+"""What a library built, compared with the file: a line for each number that differs."""
 
 from __future__ import annotations
 
@@ -14,16 +14,16 @@ TOLERANCE = 64 * EPS
 """Relative; merging inertias over fixed joints and turning them by rpy rounds a few times."""
 
 
-def differs(what: str, ours: ArrayLike, theirs: ArrayLike, scale: float = 0.0) -> Iterator[str]:
+def differs(what: str, expected: ArrayLike, built: ArrayLike, scale: float = 0.0) -> Iterator[str]:
     """A line, if two numbers or arrays are apart by more than rounding.
 
     Args:
         what: they are, in words.
-        ours: what the file says.
-        theirs: what the oracle has.
+        expected: what the file says.
+        built: what the library has.
         scale: of what was rounded on the way, where that is larger than the numbers themselves.
     """
-    x, y = np.asarray(ours, dtype=float), np.asarray(theirs, dtype=float)
+    x, y = np.asarray(expected, dtype=float), np.asarray(built, dtype=float)
     size = max(float(np.linalg.norm(x)), scale)
     if x.shape != y.shape or not np.linalg.norm(x - y) <= TOLERANCE * size:
         yield f"{what}: {_short(y)}, the file says {_short(x)}"

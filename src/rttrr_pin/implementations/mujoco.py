@@ -1,4 +1,4 @@
-"""MuJoCo as the oracle: each of the five quantities from MuJoCo's own numbers.
+"""MuJoCo: each of the five quantities from MuJoCo's own numbers.
 
 | quantity | from |
 |---|---|

@@ -1,7 +1,7 @@
 """The model that MuJoCo built, link by link, and what in it differs from the file.
 
 MuJoCo's importer reads the file on its own: names, tree, placements, axes, masses, centres of mass and tensors are held
-against ours as it read them. What its compiler would do to them next is kept away:
+against expected as it read them. What its compiler would do to them next is kept away:
 
 - Fixed links are fused into what carries them, the root into the world: `fusestatic` is off, and every link is a body.
 - Shapes, meshes and a `<mujoco>` section are left out of the text: dynamics take `<inertial>` alone.
@@ -10,7 +10,7 @@ against ours as it read them. What its compiler would do to them next is kept aw
 - Tensors are diagonalised by an iteration that stops at 1e-12: here by LAPACK. MuJoCo computes with those axes.
 - Quaternions and axes are divided by their length where that is off by more than 1e-14: here always.
 - `<mimic>` becomes a soft constraint (in older versions nothing): left out, once it is compared. Followers are driven
-  along, as for every oracle.
+  along, as for every library.
 - A floating joint must hang on the world: three slides and a ball are the same joint, and may hang anywhere.
 - Before version 3.14 the `rpy` of `<inertial>` is dropped: a tensor that it turns is a difference, and an error.
 """
@@ -55,7 +55,7 @@ MADE_OF = {
     FLOATING: (SLIDE, SLIDE, SLIDE, INTERVAL),
     FIXED: (),
 }
-"""MuJoCo's joints that make one of ours, in the order in which they move their body."""
+"""MuJoCo's joints that make one of expected, in the order in which they move their body."""
 
 PARTS = {PLANAR: ("_TX", "_TY", "_RZ"), FIXED: ()}
 """What MuJoCo appends to the name of a joint that it makes of several, and of one that it does not make."""
@@ -177,10 +177,10 @@ def _bare(urdf: str) -> str:
 
 def _differences(model: Model, bodies: dict[str, Any]) -> Iterator[str]:
     """One line for each number of MuJoCo's that is not what the file says."""
-    theirs = {name.removeprefix(PREFIX) for name in bodies if name.startswith(PREFIX)}
-    ours = {model.root.name, *model.link_names} if not model.floating else set(model.link_names)
-    if theirs != ours:
-        yield f"links: {', '.join(sorted(theirs))}, the file has {', '.join(sorted(ours))}"
+    built = {name.removeprefix(PREFIX) for name in bodies if name.startswith(PREFIX)}
+    expected = {model.root.name, *model.link_names} if not model.floating else set(model.link_names)
+    if built != expected:
+        yield f"links: {', '.join(sorted(built))}, the file has {', '.join(sorted(expected))}"
         return
     for i, (joint, link) in enumerate(zip(model.joints, model.links, strict=True)):
         body = bodies[PREFIX + link.name]
@@ -189,12 +189,12 @@ def _differences(model: Model, bodies: dict[str, Any]) -> Iterator[str]:
             yield from _joint_differences(model, joint, body)
 
 
-def _inertia_differences(link: Link, theirs: _Inertial) -> Iterator[str]:
+def _inertia_differences(link: Link, built: _Inertial) -> Iterator[str]:
     here = f"link {link.name!r}"
-    yield from differs(f"{here} mass", link.mass, theirs.mass)
+    yield from differs(f"{here} mass", link.mass, built.mass)
     if link.mass:
-        yield from differs(f"{here} centre of mass", link.com, theirs.com)
-    yield from differs(f"{here} inertia", link.inertia, theirs.inertia)
+        yield from differs(f"{here} centre of mass", link.com, built.com)
+    yield from differs(f"{here} inertia", link.inertia, built.inertia)
 
 
 def _joint_differences(model: Model, joint: Joint, body: Any) -> Iterator[str]:
@@ -206,29 +206,29 @@ def _joint_differences(model: Model, joint: Joint, body: Any) -> Iterator[str]:
     yield from differs(f"{here} placement R", joint.R, rotation_of(body.quat), 1.0)
     yield from differs(f"{here} placement p", joint.p, body.pos)
     made_of = MADE_OF[joint.type] if joint.type != FLOATING else (mujoco.mjtJoint.mjJNT_FREE,)
-    kinds, names = tuple(theirs.type for theirs in body.joints), [theirs.name for theirs in body.joints]
+    kinds, names = tuple(built.type for built in body.joints), [built.name for built in body.joints]
     if names != [joint.name + END + part for part in PARTS.get(joint.type, ("",))]:
         carried_by = ", ".join(name.replace(END, "") for name in names) or "no joint"
         yield f"link {body.name.removeprefix(PREFIX)!r}: carried by {carried_by}, the file says {joint.name}"
     elif kinds != made_of:
         yield f"{here}: made of {', '.join(map(str, kinds)) or 'none'}, the file says {joint.type}"
     elif joint.type.has_axis:
-        (theirs,) = body.joints
-        yield from differs(f"{here} axis", joint.axis, unit(theirs.axis), 1.0)
-        yield from _limit_differences(here, joint, theirs)
+        (built,) = body.joints
+        yield from differs(f"{here} axis", joint.axis, unit(built.axis), 1.0)
+        yield from _limit_differences(here, joint, built)
 
 
-def _limit_differences(here: str, joint: Joint, theirs: Any) -> Iterator[str]:
+def _limit_differences(here: str, joint: Joint, built: Any) -> Iterator[str]:
     """Damping and friction, and limits where the file sets them; MuJoCo has none on rates."""
     limits = joint.limits
-    yield from differs(f"{here} damping", joint.dynamics.damping, np.ravel(theirs.damping)[0])
-    yield from differs(f"{here} friction", joint.dynamics.friction, theirs.frictionloss)
-    compared = [("effort limit", limits.effort, theirs.actfrcrange[1])] if limits.effort > 0.0 else []
+    yield from differs(f"{here} damping", joint.dynamics.damping, np.ravel(built.damping)[0])
+    yield from differs(f"{here} friction", joint.dynamics.friction, built.frictionloss)
+    compared = [("effort limit", limits.effort, built.actfrcrange[1])] if limits.effort > 0.0 else []
     if joint.type.limits != "none":
-        compared += [("lower limit", limits.lower, theirs.range[0]), ("upper limit", limits.upper, theirs.range[1])]
-    for what, ours, number in compared:
-        if np.isfinite(ours):
-            yield from differs(f"{here} {what}", ours, number)
+        compared += [("lower limit", limits.lower, built.range[0]), ("upper limit", limits.upper, built.range[1])]
+    for what, expected, number in compared:
+        if np.isfinite(expected):
+            yield from differs(f"{here} {what}", expected, number)
 
 
 def _mimic_differences(model: Model, spec: Any) -> Iterator[str]:
@@ -236,12 +236,12 @@ def _mimic_differences(model: Model, spec: Any) -> Iterator[str]:
     read = {equality.name1.removesuffix(END): equality for equality in spec.equalities}
     for joint in model.joints:
         if joint.mimic is not None and not joint.mimic.rounded and joint.name in read:
-            here, theirs = f"joint {joint.name!r} mimic", read[joint.name]
+            here, built = f"joint {joint.name!r} mimic", read[joint.name]
             leader = model.joints[joint.mimic.joint].name
-            if theirs.name2 != leader + END:
-                yield f"{here}: follows {theirs.name2.removesuffix(END)!r}, the file says {leader!r}"
-            yield from differs(f"{here} multiplier", joint.mimic.multiplier, theirs.data[1])
-            yield from differs(f"{here} offset", joint.mimic.offset, theirs.data[0])
+            if built.name2 != leader + END:
+                yield f"{here}: follows {built.name2.removesuffix(END)!r}, the file says {leader!r}"
+            yield from differs(f"{here} multiplier", joint.mimic.multiplier, built.data[1])
+            yield from differs(f"{here} offset", joint.mimic.offset, built.data[0])
 
 
 def _prepare(spec: Any, model: Model, bodies: dict[str, Any]) -> None:
@@ -260,8 +260,8 @@ def _prepare(spec: Any, model: Model, bodies: dict[str, Any]) -> None:
             body.mass, body.inertia, body.fullinertia = 1.0, np.ones(3), np.full(6, np.nan)
             body.ipos, body.iquat, body.explicitinertial = np.zeros(3), np.array([1.0, 0.0, 0.0, 0.0]), True
             body.quat = unit(body.quat)
-            for theirs in body.joints:
-                theirs.axis = unit(theirs.axis)
+            for built in body.joints:
+                built.axis = unit(built.axis)
 
 
 def _make_floating(body: Any) -> None:

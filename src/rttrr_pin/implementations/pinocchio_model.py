@@ -94,10 +94,10 @@ def pin_links(model: Model, pin_model: Any) -> list[PinLink]:
 
 def differences(model: Model, pin_model: Any) -> list[str]:
     """One line for each number of Pinocchio's model that is not what the file says."""
-    theirs = [name for name in pin_model.names if name != "universe"]
-    ours = [joint.name for joint in model.joints if joint.nv]
-    if theirs != ours:
-        return [f"moving joints: {', '.join(theirs)}, the file has {', '.join(ours)}"]
+    built = [name for name in pin_model.names if name != "universe"]
+    expected = [joint.name for joint in model.joints if joint.nv]
+    if built != expected:
+        return [f"moving joints: {', '.join(built)}, the file has {', '.join(expected)}"]
     found: list[str] = []
     data = pin_model.createData()
     for i, joint in enumerate(model.joints):
@@ -142,17 +142,17 @@ def _mimic_differences(model: Model) -> Iterator[str]:
     for joint in followers:
         number = pin_model.getJointId(joint.name)
         if number < pin_model.njoints and pin_model.joints[number].shortname() == "JointModelMimic" and joint.mimic:
-            theirs = pin_model.joints[number].extract()
-            yield from differs(f"joint {joint.name!r} mimic multiplier", joint.mimic.multiplier, theirs.scaling)
-            yield from differs(f"joint {joint.name!r} mimic offset", joint.mimic.offset, theirs.offset)
+            built = pin_model.joints[number].extract()
+            yield from differs(f"joint {joint.name!r} mimic multiplier", joint.mimic.multiplier, built.scaling)
+            yield from differs(f"joint {joint.name!r} mimic offset", joint.mimic.offset, built.offset)
 
 
-def _inertia_differences(link: str, ours: tuple[float, Array, Array], theirs: Any) -> Iterator[str]:
-    mass, com, tensor = ours
-    yield from differs(f"{link} mass", mass, theirs.mass)
+def _inertia_differences(link: str, expected: tuple[float, Array, Array], built: Any) -> Iterator[str]:
+    mass, com, tensor = expected
+    yield from differs(f"{link} mass", mass, built.mass)
     if mass:
-        yield from differs(f"{link} centre of mass", com, theirs.lever)
-    yield from differs(f"{link} inertia", tensor, theirs.inertia, mass * float(com @ com))
+        yield from differs(f"{link} centre of mass", com, built.lever)
+    yield from differs(f"{link} inertia", tensor, built.inertia, mass * float(com @ com))
 
 
 def _limit_differences(here: str, joint: Joint, pin_model: Any, at: int) -> Iterator[str]:
@@ -171,9 +171,9 @@ def _limit_differences(here: str, joint: Joint, pin_model: Any, at: int) -> Iter
             ("lower limit", limits.lower, pin_model.lowerPositionLimit[q]),
             ("upper limit", limits.upper, pin_model.upperPositionLimit[q]),
         ]
-    for what, ours, theirs in compared:
-        if np.isfinite(ours):
-            yield from differs(f"{here} {what}", ours, theirs)
+    for what, expected, built in compared:
+        if np.isfinite(expected):
+            yield from differs(f"{here} {what}", expected, built)
 
 
 def _subspace(joint: Joint) -> Array:

@@ -1,6 +1,6 @@
 """What Pinocchio's formulas round beyond ours.
 
-A difference between two correct programs must be held against the rounding of both. Ours is bounded operation by
+A difference between two correct programs must be compared with the rounding of both. Ours is bounded operation by
 operation; of Pinocchio's we know the formulas. Two things in them round, and do not occur in ours:
 
 - Spatial accelerations and momenta about the joint's origin O contain terms that cancel in the result: w x v_O in
