@@ -2,7 +2,7 @@
 
 The reference recursion runs once on scalars that record (`trace`), its sums are ordered (`summation`), and an
 emitter turns it into machine code (`emit`), which is kept on disk (`cache`). Robots too large for that (`build`) have
-each kind of step of the reference recursion recorded once (`outliner`), and become a table of calls (`call_program`, `register_allocation`).
+each kind of step of the recursion recorded once (`outlining`), and become a table of calls (`call_program`).
 """
 
 from rttrr_pin.compile.kernel import Kernel

@@ -1,6 +1,6 @@
 """Takes the steps of the reference recursion: each kind is recorded once, however many links it is taken on.
 
-The reference recursion hands its steps (a link outwards, a link inwards) to `Arithmetic.call`. The outliner looks at what a
+The recursion hands its steps (a link outwards, a link inwards) to `Arithmetic.call`. The outliner looks at what a
 step is given: which scalars are columns, which are numbers of the robot, and what stands for itself (the joint's type,
 a vector of zeros). A step that was seen on arguments of this structure is not run again, but called.
 """

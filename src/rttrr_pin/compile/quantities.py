@@ -1,6 +1,6 @@
 """What a program can compute: the five quantities of the recursion, and what else follows from the same recursion.
 
-Each is a line in the table `QUANTITIES`: what it needs, its shape, and how its scalars come from the reference recursion.
+Each is a line in the table `QUANTITIES`: what it needs, its shape, and how its scalars come from the recursion.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
-"""Where each of our joints has its numbers in an oracle's arrays, and in our own.
+"""Where each of our joints has its numbers in a library's arrays, and in our own.
 
-Oracles let every joint move by itself: those that follow another are driven along, and their forces are summed up by
+Libraries let every joint move by itself: those that follow another are driven along, and their forces are summed up by
 virtual work.
 """
 
@@ -23,12 +23,12 @@ from rttrr_pin.core.scalars import FLOAT
 
 @dataclass(frozen=True, slots=True)
 class LibraryJoint:
-    """A moving joint of ours, where an oracle has it.
+    """A moving joint of ours, where a library has it.
 
     Attributes:
         type: how it moves.
-        q: where its coordinates are in the oracle's q.
-        v: where its rates are in the oracle's v, a, tau.
+        q: where its coordinates are in the library's q.
+        v: where its rates are in the library's v, a, tau.
         own_q: where its coordinates are in our q; of a follower those of the joint it follows.
         own_v: where its rates are in our v, a, tau; likewise.
         mimic: whom it follows.
