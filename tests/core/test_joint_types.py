@@ -184,7 +184,7 @@ def test_every_program_takes_the_type(joint_type: JointType) -> None:
     for tau in (robot.compile("tau")(q, v, a), evaluated("lagrange", robot.model, q, v, a).values["tau"]):
         np.testing.assert_allclose(tau, expected.tau, rtol=0.0, atol=1e-11 * scale)
     assert 0.0 < bounds.tau.max() < 1e-11 * scale
-    assert [row.law.id for row in check_laws(robot, 20).rows if not row.holds] == []
+    assert [row.law.id for row in check_laws(robot, n_states=20).rows if not row.passed] == []
     M = robot.mass_matrix(q)
     np.testing.assert_allclose(M, M.swapaxes(1, 2), atol=1e-12 * np.abs(M).max())
     np.testing.assert_allclose(robot.derivatives(q, v, a)[2], M, atol=1e-12 * np.abs(M).max())

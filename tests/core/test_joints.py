@@ -14,6 +14,7 @@ from rttrr_pin.core.joints import JOINT_TYPES
 from rttrr_pin.errors import InputError, NumberError, ShapeError, UnknownNameError, UrdfError
 from rttrr_pin.validation import Sampler, validate
 from support.implementations import evaluated
+from support.recursion import recursion
 from support.serial_chains import inertial, joint, random_chain
 from support.tolerances import ROUNDING, norm_error
 from support.trees import TREE_TYPES, random_tree
@@ -26,7 +27,7 @@ SEEDS = range(12)
 def test_random_trees_agree_with_pinocchio(seed: int, base: Any) -> None:
     """All joint types, branches, followers, massless frames, friction; 1,000 more in benchmarks/random_trees.py."""
     robot = rttrr_pin.load(random_tree(seed, 1 + 2 * seed), base=base, friction=True)
-    result = validate(robot, n_states=16, seed=seed, sampling="mixed")
+    result = validate(robot, "recursion", n_states=16, seed=seed, sampling="mixed")
     assert result.passed, result.worst
 
 
@@ -35,7 +36,7 @@ def test_each_joint_type_alone_and_below_itself(kind: str) -> None:
     for joints in (1, 3):
         robot = rttrr_pin.load(random_tree(joints, joints, (kind,), mimics=False))
         assert {joint.type for joint in robot.model.joints} == {JOINT_TYPES[kind]}
-        assert validate(robot, n_states=40, sampling="mixed").passed
+        assert validate(robot, "recursion", n_states=40, sampling="mixed").passed
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -67,7 +68,7 @@ def test_a_follower_moves_as_it_says_and_its_force_counts(seed: int) -> None:
     assert norm_error(ours.n, theirs.n) <= ROUNDING
     expected = np.stack([theirs.tau[:, 1], theirs.tau[:, 2] - 1.5 * theirs.tau[:, 0]], axis=1)
     assert norm_error(ours.tau, expected) <= ROUNDING
-    assert validate(bound, n_states=200, seed=seed).passed
+    assert validate(bound, "recursion", n_states=200, seed=seed).passed
 
 
 def test_pinocchio_itself_agrees_where_it_can_follow() -> None:
@@ -79,7 +80,7 @@ def test_pinocchio_itself_agrees_where_it_can_follow() -> None:
     model = pin.buildModelFromXML(text, mimic=True)
     data = model.createData()
     drawn = Sampler(robot.model).draw(0, 20)
-    ours = robot.inverse_dynamics(drawn.q, drawn.v, drawn.a)
+    ours = recursion(robot, drawn.q, drawn.v, drawn.a)
     theirs = [pin.rnea(model, data, *state) for state in zip(drawn.q, drawn.v, drawn.a, strict=True)]
     assert norm_error(ours.tau, theirs) <= ROUNDING
 
@@ -113,7 +114,7 @@ def test_a_floating_base_is_pinocchios_free_flyer(rttrr: Robot, seed: int) -> No
     model = pin.buildModelFromXML(rttrr.model.urdf, pin.JointModelFreeFlyer())
     data = model.createData()
     drawn = Sampler(robot.model, seed=seed).draw(0, 10)
-    ours = robot.inverse_dynamics(drawn.q, drawn.v, drawn.a)
+    ours = recursion(robot, drawn.q, drawn.v, drawn.a)
     for k in range(10):
         assert norm_error(ours.tau[k], pin.rnea(model, data, drawn.q[k], drawn.v[k], drawn.a[k])) <= ROUNDING
     np.testing.assert_array_equal(ours.tau[:, :3], ours.f[:, 0])
@@ -192,7 +193,7 @@ def test_drives_add_to_tau_and_not_to_the_bearings(rttrr: Robot) -> None:
     assert norm_error(with_.tau - with_.tau_joint, without.tau) <= ROUNDING
     np.testing.assert_array_equal(with_.n, without.n)
     assert not without.tau_joint.any()
-    assert validate(robot, n_states=300).passed
+    assert validate(robot, "recursion", n_states=300).passed
 
 
 def test_friction_of_the_file_is_an_option() -> None:
@@ -242,7 +243,7 @@ def test_a_fixed_link_is_what_pinocchio_says_where_the_body_has_no_branch() -> N
     model = pin.buildModelFromXML(robot.model.urdf)
     data = model.createData()
     drawn = Sampler(robot.model).draw(0, 10)
-    ours = robot.inverse_dynamics(drawn.q, drawn.v, drawn.a)
+    ours = recursion(robot, drawn.q, drawn.v, drawn.a)
     for k in range(10):
         pin.forwardKinematics(model, data, drawn.q[k], drawn.v[k], drawn.a[k])
         pin.rnea(model, data, drawn.q[k], drawn.v[k], drawn.a[k])
@@ -266,4 +267,4 @@ def test_a_sensor_beside_a_branch_carries_its_own_weight_alone() -> None:
     mass = robot.model.links[robot.model.link_index("sensor")].mass
     result = robot.inverse_dynamics([0.3, 0.4], [0, 0], [0, 0])
     assert abs(np.linalg.norm(result.at("sensor")["f"]) - 9.81 * mass) <= ROUNDING * mass
-    assert validate(robot, n_states=50).passed
+    assert validate(robot, "recursion", n_states=50).passed

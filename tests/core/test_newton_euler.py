@@ -1,4 +1,4 @@
-"""The specification, on several kinds of scalar, and against Pinocchio."""
+"""The reference recursion, on several kinds of scalar, and against Pinocchio."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ from rttrr_pin.implementations import Batch, make_implementation
 from rttrr_pin.validation import EPS as PACKAGE_EPS
 from rttrr_pin.validation import SAMPLINGS, Sampler, validate
 from support.high_precision import mp_arithmetic
+from support.recursion import recursion
 from support.serial_chains import RANDOM_TYPES, random_chain
 from support.tolerances import EPS, MODEL, ROUNDING, norm_error
 
@@ -51,7 +52,7 @@ def test_agrees_with_pinocchio_with_a_payload_at_every_link(robot: Robot, expres
     q, v, a = states(robot, seed)
     for i, link in enumerate(robot.link_names):
         f, n = rng.uniform(-20, 20, (2, len(q), 3))
-        ours = robot.inverse_dynamics(q, v, a, Wrench(f, n, link, expressed_in))
+        ours = recursion(robot, q, v, a, Wrench(f, n, link, expressed_in))
         theirs = oracle.evaluate(Batch(robot.model, q, v, a, (Load(i, f, n, expressed_in == "base"),))).values
         assert_same(ours, theirs)
 
@@ -59,9 +60,9 @@ def test_agrees_with_pinocchio_with_a_payload_at_every_link(robot: Robot, expres
 def test_several_payloads_add_up(robot: Robot) -> None:
     q, v, a = states(robot, 3, 5)
     wrenches = [Wrench((i + 1, 2, 3), (4, i, 6), link) for i, link in enumerate(robot.link_names)]
-    together = robot.inverse_dynamics(q, v, a, wrenches)
-    alone = [robot.inverse_dynamics(q, v, a, wrench) for wrench in wrenches]
-    bare = robot.inverse_dynamics(q, v, a)
+    together = recursion(robot, q, v, a, wrenches)
+    alone = [recursion(robot, q, v, a, wrench) for wrench in wrenches]
+    bare = recursion(robot, q, v, a)
     for key, x in together.items():
         total = sum(getattr(one, key) - getattr(bare, key) for one in alone) + getattr(bare, key)
         assert norm_error(x, total) <= ROUNDING
@@ -81,7 +82,7 @@ def test_gravity_is_the_field_that_was_passed(rttrr: Robot) -> None:
     for gravity in ((0, 0, 0), (1.0, -2.0, 3.0)):
         other = rttrr_pin.load("rttrr", gravity=gravity)
         assert validate(other, "recursion", n_states=50).passed
-    resting = rttrr_pin.load("rttrr", gravity=(0, 0, 0)).inverse_dynamics(np.ones(5), np.zeros(5), np.zeros(5))
+    resting = recursion(rttrr_pin.load("rttrr", gravity=(0, 0, 0)), np.ones(5), np.zeros(5), np.zeros(5))
     assert not any(x.any() for _, x in resting.items())
 
 
@@ -89,7 +90,7 @@ def test_forces_balance_on_every_link(robot: Robot) -> None:
     """What a link gets from its parent is its net force and what it passes on: the last link passes on the payload."""
     q, v, a = states(robot, 1)
     payload = Wrench((1, 2, 3), (4, 5, 6))
-    result = robot.inverse_dynamics(q, v, a, payload)
+    result = recursion(robot, q, v, a, payload)
     f, F = result.f[:, -1], result.F[:, -1]
     assert norm_error(f, F + np.array([1, 2, 3])) <= MODEL
 
@@ -97,7 +98,7 @@ def test_forces_balance_on_every_link(robot: Robot) -> None:
 def test_armless_robot_has_reactions_only(robot: Robot) -> None:
     """The weight of everything rests on the first link, whatever the coordinates, when nothing moves."""
     nv = robot.model.nv
-    result = robot.inverse_dynamics(np.full(nv, 0.3), np.zeros(nv), np.zeros(nv))
+    result = recursion(robot, np.full(nv, 0.3), np.zeros(nv), np.zeros(nv))
     weight = sum(link.mass for link in robot.model.links) * 9.81
     assert abs(np.linalg.norm(result.f[0]) - weight) <= ROUNDING * weight
 

@@ -120,7 +120,7 @@ def pinocchios(name: str) -> dict[str, np.ndarray]:
     at, payload = drawn(name)
     load = Load(len(model.links) - 1, payload[:, :3], payload[:, 3:])
     wrenches = evaluated("pinocchio", model, at.q, at.v, at.a, [load]).values
-    found = {key: getattr(wrenches, key) for key in ("tau", *OF_LINKS)}
+    found = {key: wrenches[key] for key in ("tau", *OF_LINKS)}
     still = Robot(model.without_joint_effects())
     found["M"], found["g"] = robot(name).mass_matrix(at.q), still.gravity_torque(at.q)
     found["Cv"] = still.nonlinear_effects(at.q, at.v) - found["g"]

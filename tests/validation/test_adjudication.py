@@ -162,7 +162,7 @@ def test_who_decides(rttrr: Robot) -> None:
     """The file; where the model is not what the file says, the model."""
     assert true_parameters(rttrr.model) == "read"
     assert true_parameters(other_model(rttrr.model, 3, "mass")) == "doubles"
-    assert true_parameters(replace(rttrr.model, urdf="")) == "doubles"
+    assert true_parameters(replace(rttrr.model, document=None)) == "doubles"
 
 
 def beyond(limit: float) -> Callable[[dict[str, Any], Batch], None]:
