@@ -133,7 +133,7 @@ def _numbers_of(row: Row) -> tuple[str, str, str, str]:
     if row.absolute.value == 0.0:
         return "equal", "", "", ""
     error = f"{row.absolute.value:.1e} {row.unit}"
-    return error, f"{row.relative.value:.1f}", _ratio(row.of_tolerance.value), str(row.of_tolerance.state)
+    return error, _in_eps(row.relative.value), _ratio(row.of_tolerance.value), str(row.of_tolerance.state)
 
 
 def _cell(row: Row | None) -> Text:
@@ -148,6 +148,10 @@ def _cell(row: Row | None) -> Text:
 
 def _ratio(value: float) -> str:
     return f"{value:.3f}" if value < 1e4 else f"{value:.1e}"
+
+
+def _in_eps(value: float) -> str:
+    return f"{value:.1f}" if value < 1e5 else f"{value:.1e}"
 
 
 def word(passed: bool) -> Text:
@@ -214,8 +218,7 @@ def _wrong(assessment: Assessment) -> str:
 
 def _eps(deviation: Deviation) -> str:
     """How far off, and where."""
-    number = f"{deviation.eps:.1f}" if deviation.eps < 1e4 else f"{deviation.eps:.1e}"
-    return f"{number} eps at {deviation.quantity} of {deviation.at}"
+    return f"{_in_eps(deviation.eps)} eps at {deviation.quantity} of {deviation.at}"
 
 
 def show_state(report: StateReport, console: Console) -> None:
@@ -253,7 +256,7 @@ def _show_comparison(report: StateReport, comparison: StateComparison, console: 
             "\n".join(f"{x:.15g}" for x in subject),
             "\n".join(f"{x:.15g}" for x in reference),
             f"{one.error[0]:.1e}",
-            f"{one.relative[0]:.1f}",
+            _in_eps(one.relative[0]),
             word(bool(one.of_tolerance[0] <= 1.0)),
         )
     console.print(table)
@@ -314,7 +317,7 @@ def show_many(entries: Sequence[Entry], task: Task, seconds: float, console: Con
     for column in table.columns[2:6]:
         column.justify = "right"
     for entry in entries:
-        numbers = (str(entry.joints), str(entry.links), f"{entry.eps:.1f}", _ratio(entry.of_tolerance))
+        numbers = (str(entry.joints), str(entry.links), _in_eps(entry.eps), _ratio(entry.of_tolerance))
         table.add_row(Text(entry.name), entry.base, *(numbers if entry.links else [""] * 4), Text(*LOOK[entry.verdict]))
     console.print(table)
     console.print(Text("relative: worst normwise error over all links", "dim"))
