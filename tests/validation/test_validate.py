@@ -173,14 +173,15 @@ SIGNS = [
 ]
 
 
-@pytest.mark.parametrize("masses", SIGNS, ids=str)
-@pytest.mark.parametrize("subject", ["recursion", "kernel", "pinocchio"])
+CASES = [(signs, subject) for signs in SIGNS for subject in ("recursion", "kernel")] + [(SIGNS[0], "pinocchio")]
+"""Pinocchio cannot build what moves with less than nothing."""
+
+
+@pytest.mark.parametrize(("masses", "subject"), CASES, ids=str)
 def test_an_allowance_is_a_sum_of_sizes_whatever_the_signs_of_masses(
     masses: tuple[float, float, float, str], subject: str
 ) -> None:
-    """No false alarm, and no blind tolerance: 1e-9 of error is seen. Pinocchio cannot build what moves with less than 0."""
-    if subject == "pinocchio" and masses not in SIGNS[:1]:
-        return
+    """No false alarm, and no blind tolerance: 1e-9 of error is seen."""
     robot = rttrr_pin.load(negative(*masses))
     reference = "lagrange" if subject != "pinocchio" else "recursion"
     assert validate(robot, subject, reference, 200).passed
