@@ -9,21 +9,16 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
-from typing import Annotated, Any
 
-import typer
-from typer.core import TyperGroup
+import click
 
 from rttrr_pin.errors import ModelMismatchError, RttrrError
 from rttrr_pin.reporting.output import AGREE, DISAGREE, INTERRUPTED, UNUSABLE, discard_stdout, open_streams
 
-UsageError: Any = typer.BadParameter.__base__
-"""Typer brings its own copy of click and does not export this class."""
-
 COMMANDS = {
     "validate": "rttrr_pin.validation.command:validate",
     "state": "rttrr_pin.validation.command:state",
-    "search": "rttrr_pin.validation.command_search:search",
+    "search": "rttrr_pin.validation.command:search",
     "laws": "rttrr_pin.laws.command:laws",
     "audit": "rttrr_pin.auditing.command:audit",
     "derive": "rttrr_pin.derivation.command:derive",
@@ -33,44 +28,36 @@ COMMANDS = {
 """By name, the function that parses, calls and returns an exit code; a new command is an entry here."""
 
 
-class LazyGroup(TyperGroup):
+def _version(ctx: click.Context, option: click.Parameter, asked: bool) -> None:
+    if asked:
+        from rttrr_pin import __version__
+
+        click.echo(f"rttrr-pin {__version__}")
+        ctx.exit(AGREE)
+
+
+class LazyGroup(click.Group):
     """Commands that are imported when they are asked for: `inspect` never loads what `validate` needs."""
 
-    def list_commands(self, ctx: Any) -> list[str]:
+    def list_commands(self, ctx: click.Context) -> list[str]:
         """Their names, in the order of the table."""
         return list(COMMANDS)
 
-    def get_command(self, ctx: Any, cmd_name: str) -> Any:
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
         """The command of that name; None where there is none."""
         if cmd_name not in COMMANDS:
             return None
         module, name = COMMANDS[cmd_name].split(":")
-        one = typer.Typer(add_completion=False, rich_markup_mode=None)
-        one.command(cmd_name)(getattr(import_module(module), name))
-        return typer.main.get_command(one)
+        command: click.Command = getattr(import_module(module), name)
+        return command
 
 
-app = typer.Typer(
-    name="rttrr-pin",
-    help="Validates rigid-body dynamics: a hand-written Newton-Euler recursion against Pinocchio, link by link.",
-    cls=LazyGroup,
-    no_args_is_help=True,
-    add_completion=False,
-    pretty_exceptions_enable=False,
-    rich_markup_mode=None,
+@click.group(cls=LazyGroup, context_settings={"show_default": True})
+@click.option(
+    "--version", is_flag=True, is_eager=True, expose_value=False, callback=_version, help="Print the version."
 )
-
-
-@app.callback(invoke_without_command=True)
-def _program(
-    version: Annotated[bool, typer.Option("--version", help="Print the version and leave.")] = False,
-) -> None:
+def program() -> None:
     """Validates rigid-body dynamics: a hand-written Newton-Euler recursion against Pinocchio, link by link."""
-    if version:
-        from rttrr_pin import __version__
-
-        typer.echo(f"rttrr-pin {__version__}")
-        raise typer.Exit(AGREE)
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -85,19 +72,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     open_streams()
     words = sys.argv[1:] if arguments is None else list(arguments)
     try:
-        code = app(args=words, standalone_mode=False, prog_name="rttrr-pin")
-        sys.stdout.flush()
-    except UsageError as error:
-        message = error.format_message()
-        _say(message if message.startswith("Usage") else f"error: {message}\nsee: {_command_of(words)} --help")
-        code = UNUSABLE
+        code = _run(words)
     except ModelMismatchError as error:
         _say(f"DISAGREE: {error}")
         code = DISAGREE
     except RttrrError as error:
         _say(f"error: {error}")
         code = UNUSABLE
-    except (typer.Abort, KeyboardInterrupt):  # by its version, Typer raises or returns the code
+    except KeyboardInterrupt:
         code = INTERRUPTED
     except BrokenPipeError:  # before a verdict, as in --help
         discard_stdout()
@@ -109,12 +91,25 @@ def main(arguments: Sequence[str] | None = None) -> int:
         code = UNUSABLE
     if code == INTERRUPTED:
         _say("interrupted: nothing was written")
+    return code
+
+
+def _run(words: list[str]) -> int:
+    """Parse the words and call the command; its exit code."""
+    try:
+        with program.make_context("rttrr-pin", words) as context:
+            code = program.invoke(context)
+        sys.stdout.flush()
+    except click.exceptions.Exit as leaving:
+        code = leaving.exit_code
+    except click.exceptions.NoArgsIsHelpError as error:
+        _say(error.format_message())
+        code = UNUSABLE
+    except click.UsageError as error:
+        command = f"rttrr-pin {words[0]}" if words[0] in COMMANDS else "rttrr-pin"
+        _say(f"error: {error.format_message()}\nsee: {command} --help")
+        code = UNUSABLE
     return code if isinstance(code, int) else AGREE
-
-
-def _command_of(words: Sequence[str]) -> str:
-    """The command that was called, as far as it exists."""
-    return f"rttrr-pin {words[0]}" if words and words[0] in COMMANDS else "rttrr-pin"
 
 
 def _say(message: str) -> None:

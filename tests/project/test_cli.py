@@ -115,7 +115,7 @@ def test_names_are_not_markup(tmp_path: Path, capsys: pytest.CaptureFixture[str]
 UNUSABLE = {
     "no-such-robot": (["validate", "rttr"], "did you mean"),
     "no-such-file": (["validate", "a/b.urdf"], "no bundled robot or file is called 'a/b.urdf'"),
-    "no-such-option": (["validate", "--sed", "1"], "No such option: --sed"),
+    "no-such-option": (["validate", "--sed", "1"], "No such option '--sed'"),
     "states-word": (["validate", "--states", "many"], "--states"),
     "no-states": (["validate", "--states", "0"], "states is 0"),
     "sampling": (["validate", "--sampling", "corner"], "did you mean corners"),

@@ -5,7 +5,7 @@ from __future__ import annotations
 import subprocess
 import sys
 
-LARGE = ("pinocchio", "llvmlite", "yourdfpy", "trimesh", "rich", "typer", "lxml", "importlib.metadata")
+LARGE = ("pinocchio", "llvmlite", "yourdfpy", "trimesh", "rich", "click", "lxml", "importlib.metadata")
 
 
 def test_nothing_large_is_imported() -> None:

@@ -14,13 +14,10 @@ BENCHMARKS = {path.stem for path in (TESTS.parent / "benchmarks").glob("*.py")} 
 BESIDE = {"data", "fuzz", "project", "support"}
 """Folders that stand for no package."""
 
-UNTESTED = {"reporting"}
-"""Packages that others' reports test."""
-
 
 def test_each_package_has_its_folder_of_tests() -> None:
     folders = {path.parent.name for path in TESTS.glob("*/test_*.py")}
-    assert folders - BESIDE == PACKAGES - UNTESTED
+    assert folders - BESIDE == PACKAGES
 
 
 @pytest.mark.parametrize("path", sorted(TESTS.rglob("*.py")), ids=lambda path: str(path.relative_to(TESTS)))

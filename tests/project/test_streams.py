@@ -73,7 +73,7 @@ def test_a_file_that_may_not_be_read_is_named(
     def refuse(*_: object) -> None:
         raise PermissionError(13, "Permission denied", "robots")
 
-    monkeypatch.setattr("rttrr_pin.cli.app", lambda **_: refuse())
+    monkeypatch.setattr("rttrr_pin.cli._run", refuse)
     assert main(["validate", "robots"]) == 2
     assert capsys.readouterr().err == "error: robots: Permission denied\n"
 

@@ -2,51 +2,63 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import Annotated
 
-import typer
+import click
 
 from rttrr_pin.auditing import Publication, Verdict, read_publication
 from rttrr_pin.auditing import audit as run_audit
 from rttrr_pin.auditing.errata import errata
 from rttrr_pin.auditing.report import show_audit, show_equations
 from rttrr_pin.errors import InputError
+from rttrr_pin.reporting.options import check_targets, quiet, target
 from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json, write_text
 
 
+@click.command
+@click.argument(
+    "file",
+    required=False,
+    type=click.Path(path_type=Path),
+    help="Equations as TOML or YAML; without it, those of the paper on the RTTRR arm.",
+)
+@click.option("--equation", multiple=True, metavar="NUMBER", help="Only the equation of this number, in full. Repeats.")
+@click.option(
+    "--seed", type=click.IntRange(min=0), default=0, help="Of the random state at which numbers are compared."
+)
+@target("--json", "the outcome as JSON")
+@target("--latex", "an errata sheet as LaTeX")
+@target("--html", "an errata sheet as one HTML page")
+@target("--markdown", "an errata sheet as Markdown")
+@quiet
 def audit(
-    file: Annotated[
-        Path | None, typer.Argument(help="Equations as TOML or YAML; without it, those of the paper on the RTTRR arm.")
-    ] = None,
-    equation: Annotated[
-        list[str] | None, typer.Option(help="Only the equation of this number, in full; repeatable.")
-    ] = None,
-    seed: Annotated[int, typer.Option(help="Of the random state at which numbers are compared.", min=0)] = 0,
-    json: Annotated[str | None, typer.Option(help="Write the result as JSON to this file; '-' is stdout.")] = None,
-    latex: Annotated[str | None, typer.Option(help="Write an errata sheet as LaTeX; '-' is stdout.")] = None,
-    html: Annotated[str | None, typer.Option(help="Write an errata sheet as one HTML page; '-' is stdout.")] = None,
-    markdown: Annotated[str | None, typer.Option(help="Write an errata sheet as Markdown; '-' is stdout.")] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
+    file: Path | None,
+    equation: tuple[str, ...],
+    seed: int,
+    json: str | None,
+    latex: str | None,
+    html: str | None,
+    markdown: str | None,
+    quiet: bool,
 ) -> int:
     """Compare published equations of motion with the Newton-Euler recursion, term by term.
 
     Exit code: 0 all right, 1 findings or unreadable equations, 2 unusable input, such as undeclared symbols alone.
     """
     sheets = {"latex": latex, "html": html, "markdown": markdown}
-    targets = {f"--{form}": target for form, target in ({"json": json} | sheets).items() if target is not None}
-    _refuse_shared(targets)
+    targets = {"--json": json} | {f"--{form}": where for form, where in sheets.items()}
+    check_targets(targets, [] if file is None else [file])
     publication = read_publication() if file is None else read_publication(file)
     if equation:
         publication = _only(publication, equation)
     with progress(len(publication.equations), quiet, "equations") as advance:
         result = run_audit(publication, seed, advance)
     write_json(json, result.to_dict)
-    for form, target in sheets.items():
-        write_text(target, partial(errata, result, form))
+    for form, where in sheets.items():
+        write_text(where, partial(errata, result, form))
     console = Output(quiet=quiet or "-" in targets.values(), soft_wrap=False, highlight=False)
     if equation:
         show_equations(result, console)
@@ -56,17 +68,6 @@ def audit(
         return AGREE
     only_undeclared = not result.count(Verdict.DIFFERS) and not result.count(Verdict.UNPARSED)
     return UNUSABLE if only_undeclared else DISAGREE
-
-
-def _refuse_shared(targets: Mapping[str, str]) -> None:
-    """Two outputs in one place would be neither."""
-    places: dict[str | Path, str] = {}
-    for option, target in targets.items():
-        place = target if target == "-" else Path(target).resolve()
-        if place in places:
-            where = "stdout" if target == "-" else target
-            raise InputError(f"{places[place]} and {option} both go to {where}: give each a place of its own")
-        places[place] = option
 
 
 def _only(publication: Publication, numbers: Sequence[str]) -> Publication:

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated
 
-import typer
+import click
 from rich.text import Text
 
 from rttrr_pin.inspection import run as inspection
@@ -13,30 +12,41 @@ from rttrr_pin.inspection.fix import repair
 from rttrr_pin.inspection.report import repair_data, repair_summary
 from rttrr_pin.loading import load
 from rttrr_pin.reporting.files import write_whole
+from rttrr_pin.reporting.options import check_targets, flag, outcome, robot
 from rttrr_pin.reporting.output import AGREE, DISAGREE, Output, write_json
 
 
+@click.command
+@robot()
+@click.option(
+    "--select", multiple=True, metavar="ID", help="Only checks whose ids begin so, such as P or G201. Repeats."
+)
+@click.option("--ignore", multiple=True, metavar="ID", help="Leave out checks whose ids begin so. Repeats.")
+@flag("--strict", help="Warnings count as errors for the exit code.")
+@click.option(
+    "--fix",
+    type=click.Path(path_type=Path),
+    help="Write the file with the repairs that are certain; the rest stays as it is.",
+)
+@outcome
+@flag("--full", help="Show every link and every finding.")
 def inspect(
-    robot: Annotated[
-        str, typer.Argument(help="A bundled robot's name, the path of a URDF, or example:NAME.")
-    ] = "rttrr",
-    select: Annotated[
-        list[str] | None, typer.Option(help="Only checks whose ids begin so, such as P or G201; repeatable.")
-    ] = None,
-    ignore: Annotated[list[str] | None, typer.Option(help="Leave out checks whose ids begin so; repeatable.")] = None,
-    strict: Annotated[bool, typer.Option("--strict", help="Warnings count as errors for the exit code.")] = False,
-    fix: Annotated[
-        Path | None, typer.Option(help="Write the file with the repairs that are certain; the rest stays as it is.")
-    ] = None,
-    json: Annotated[str | None, typer.Option(help="Write the outcome as JSON to this file; '-' is stdout.")] = None,
-    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")] = False,
-    full: Annotated[bool, typer.Option("--full", help="Show every link and every finding.")] = False,
+    robot: str,
+    select: tuple[str, ...],
+    ignore: tuple[str, ...],
+    strict: bool,
+    fix: Path | None,
+    json: str | None,
+    quiet: bool,
+    full: bool,
 ) -> int:
     """Look at a robot's file: its bodies, what is impossible or implausible, what other programs do with it.
 
     Exit code: 0 no errors, 1 errors (with --strict also warnings), 2 unusable input.
     """
-    result = inspection.inspect(load(robot), select=select or (), ignore=ignore or ())
+    check_targets({"--json": json}, [robot])
+    check_targets({"--json": json, "--fix": fix})
+    result = inspection.inspect(load(robot), select=select, ignore=ignore)
     repaired = None if fix is None else repair(result)
     if fix is not None and repaired is not None:
         write_whole(fix, repaired.text)

@@ -4,28 +4,22 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated
 
-import typer
+import click
 
 from rttrr_pin.errors import InputError
 from rttrr_pin.modular_arm.urdf_text import build_urdf
 from rttrr_pin.reporting.files import write_whole
+from rttrr_pin.reporting.options import flag
 from rttrr_pin.reporting.output import AGREE
 
 
-def new(
-    code: Annotated[
-        str, typer.Argument(help="One letter per joint from the base to the tool: R (revolute), T (prismatic).")
-    ],
-    output: Annotated[
-        Path | None, typer.Option("--output", "-o", help="The file to write; without it, standard output.")
-    ] = None,
-    name: Annotated[
-        str | None, typer.Option(help="The robot's name in the file; without it, the code in small letters.")
-    ] = None,
-    force: Annotated[bool, typer.Option("--force", help="Overwrite a file that is there.")] = False,
-) -> int:
+@click.command
+@click.argument("code", help="One letter per joint from the base to the tool: R (revolute), T (prismatic).")
+@click.option("--output", "-o", type=click.Path(path_type=Path), help="The file to write; without it, standard output.")
+@click.option("--name", help="The robot's name in the file; without it, the code in small letters.")
+@flag("--force", help="Overwrite a file that is there.")
+def new(code: str, output: Path | None, name: str | None, force: bool) -> int:
     """Build the URDF of a modular arm, such as RTTRR: the modules are those of the bundled arms.
 
     Exit code: 0 written, 2 unusable input.

@@ -34,7 +34,7 @@ def write_whole(path: Path, text: str) -> None:
                 file.write(text)
             umask = os.umask(0)
             os.umask(umask)
-            Path(name).chmod(0o666 & ~umask)
+            Path(name).chmod(target.stat().st_mode & 0o7777 if target.exists() else 0o666 & ~umask)
             Path(name).replace(target)
         except BaseException:
             Path(name).unlink(missing_ok=True)

@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from rich.console import Console
-from rich.progress import BarColumn, Progress, TaskID, TextColumn, TimeRemainingColumn
 
 from rttrr_pin.reporting.files import as_json, write_whole
 
@@ -45,23 +44,25 @@ def discard_stdout() -> None:
 def progress(total: int, quiet: bool, what: str = "states") -> Iterator[Any]:
     """A function to call with the number done; it shows a bar on stderr once the run has lasted a second."""
     started = time.monotonic()
-    columns = (TextColumn("{task.completed:,} of {task.total:,} " + what), BarColumn(), TimeRemainingColumn())
-    bar = Progress(*columns, console=Console(stderr=True), transient=True)
-    shown: list[TaskID] = []
+    bar: Any = None
 
     def advance(done: int) -> None:
-        if quiet or not bar.console.is_terminal:
+        nonlocal bar
+        if quiet or not sys.stderr.isatty() or time.monotonic() - started < SHOW_PROGRESS_AFTER:
             return
-        if not shown and time.monotonic() - started > SHOW_PROGRESS_AFTER:
+        if bar is None:
+            from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
+            columns = (TextColumn("{task.completed:,} of {task.total:,} " + what), BarColumn(), TimeRemainingColumn())
+            bar = Progress(*columns, console=Console(stderr=True), transient=True)
             bar.start()
-            shown.append(bar.add_task("", total=total))
-        for task in shown:
-            bar.update(task, completed=done)
+            bar.add_task("", total=total)
+        bar.update(bar.task_ids[0], completed=done)
 
     try:
         yield advance
     finally:
-        if shown:
+        if bar is not None:
             bar.stop()
 
 

@@ -1,48 +1,31 @@
-"""`rttrr-pin validate` and `rttrr-pin state`."""
+"""`rttrr-pin validate`, `rttrr-pin state` and `rttrr-pin search`."""
 
 from __future__ import annotations
 
 import time
 from pathlib import Path
-from typing import Annotated
+from typing import Any
 
-import typer
+import click
 
 from rttrr_pin.errors import InputError
+from rttrr_pin.reporting.options import flag, outcome, robot, seed
 from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json
 from rttrr_pin.urdf.sources import EXAMPLE, examples, robots_in
-from rttrr_pin.validation import options as o
-from rttrr_pin.validation.many import BASES, Task, validate_many
-from rttrr_pin.validation.report import many_data, show_many, show_state, show_validation
-from rttrr_pin.validation.run import validate as run_validation
-from rttrr_pin.validation.state import compare_state
+from rttrr_pin.validation.options import RunOptions, conditions, drawn, payload, programs
 
 STATES = 10_000
 """Compared unless another number is asked for."""
 
 
-def validate(
-    robot: Annotated[
-        str,
-        typer.Argument(
-            help="A bundled robot's name, the path of a URDF, or example:NAME; several at once: a folder, example:all."
-        ),
-    ] = "rttrr",
-    subject: o.Subject = "kernel",
-    reference: o.Reference = None,
-    states: Annotated[int, typer.Option(help="How many states to compare; of a table all of its own.")] = STATES,
-    seed: o.Seed = 0,
-    sampling: o.Sampling = "uniform",
-    payload: o.Payload = None,
-    payload_link: o.PayloadLink = None,
-    payload_axes: o.PayloadAxes = "link",
-    gravity: o.Gravity = None,
-    base: o.Base = "fixed",
-    friction: o.Friction = False,
-    json: o.Json = None,
-    quiet: o.Quiet = False,
-    full: Annotated[bool, typer.Option("--full", help="Show a row for each joint and link.")] = False,
-) -> int:
+@click.command
+@robot("A bundled robot's name, the path of a URDF, or example:NAME; several at once: a folder, example:all.")
+@programs
+@click.option("--states", default=STATES, help="How many states to compare; of a table all of its own.")
+@drawn
+@outcome
+@flag("--full", help="Show a row for each joint and link.")
+def validate(states: int, json: str | None, quiet: bool, full: bool, **run: Any) -> int:
     """Judge one program by another on random states: tau, F, N, f, n at every joint and link.
 
     Several robots each go through a fixed and a floating base, and those that cannot be compared are listed with what
@@ -50,59 +33,70 @@ def validate(
 
     Exit code: 0 agree, 1 disagree, 2 unusable input (of several robots, at least one).
     """
-    references = tuple(reference or ["pinocchio"])
-    options = o.RunOptions(
-        robot, subject, references, seed, sampling, payload, payload_link, payload_axes, gravity, base, friction
-    )
-    several = _several(robot)
+    from rttrr_pin.validation import run as comparing
+    from rttrr_pin.validation.report import show_validation
+
+    options = RunOptions(**run)
+    several = _several(options.robot)
+    options.check_target(json, several.values())
     if several:
         return _validate_several(several, options, states, json, quiet, full)
     loaded = options.load()
     with progress(states, quiet) as advance:
-        result = run_validation(loaded, n_states=states, sampling=sampling, progress=advance, **options.chosen())
+        result = comparing.validate(
+            loaded, n_states=states, sampling=options.sampling, progress=advance, **options.chosen()
+        )
     write_json(json, result.to_dict)
     console = Output(quiet=quiet or json == "-", soft_wrap=False)
     show_validation(result, console, f"{options.command('state')} --index", full)
     return AGREE if result.passed else DISAGREE
 
 
-def state(
-    robot: o.RobotArgument = "rttrr",
-    index: Annotated[int, typer.Option(help="Which state: the number that `validate` prints.")] = 0,
-    subject: o.Subject = "kernel",
-    reference: o.Reference = None,
-    seed: o.Seed = 0,
-    sampling: o.Sampling = "uniform",
-    payload: o.Payload = None,
-    payload_link: o.PayloadLink = None,
-    payload_axes: o.PayloadAxes = "link",
-    gravity: o.Gravity = None,
-    base: o.Base = "fixed",
-    friction: o.Friction = False,
-    json: o.Json = None,
-    quiet: o.Quiet = False,
-) -> int:
+@click.command
+@robot()
+@click.option("--index", default=0, help="Which state: the number that `validate` prints.")
+@programs
+@drawn
+@outcome
+def state(index: int, json: str | None, quiet: bool, **run: Any) -> int:
     """Print one of the states of `validate` in full: every number, and who is right by interval arithmetic.
 
     Exit code: 0 agree, 1 disagree, 2 unusable input.
     """
-    options = o.RunOptions(
-        robot,
-        subject,
-        tuple(reference or ["pinocchio"]),
-        seed,
-        sampling,
-        payload,
-        payload_link,
-        payload_axes,
-        gravity,
-        base,
-        friction,
-    )
-    report = compare_state(options.load(), index, sampling=sampling, **options.chosen())
+    from rttrr_pin.validation.report import show_state
+    from rttrr_pin.validation.state import compare_state
+
+    options = RunOptions(**run)
+    options.check_target(json)
+    report = compare_state(options.load(), index, sampling=options.sampling, **options.chosen())
     write_json(json, report.to_dict)
     show_state(report, Output(quiet=quiet or json == "-", soft_wrap=False))
     return AGREE if report.passed else DISAGREE
+
+
+@click.command
+@robot()
+@programs
+@click.option("--evaluations", default=20_000, help="About how many states to look at.")
+@seed
+@payload
+@conditions
+@outcome
+def search(evaluations: int, json: str | None, quiet: bool, **run: Any) -> int:
+    """Look for the state at which two programs differ most, instead of waiting for chance.
+
+    Exit code: 0 agree even there, 1 disagree, 2 unusable input.
+    """
+    from rttrr_pin.validation.report import show_search
+    from rttrr_pin.validation.search import search_worst_state
+
+    options = RunOptions(**run)
+    options.check_target(json)
+    with progress(evaluations, quiet) as advance:
+        worst = search_worst_state(options.load(), evaluations=evaluations, progress=advance, **options.chosen())
+    write_json(json, worst.to_dict)
+    show_search(worst, Output(quiet=quiet or json == "-", soft_wrap=False))
+    return AGREE if worst.passed else DISAGREE
 
 
 def _several(robot: str) -> dict[str, Path]:
@@ -116,9 +110,12 @@ def _several(robot: str) -> dict[str, Path]:
 
 
 def _validate_several(
-    sources: dict[str, Path], options: o.RunOptions, states: int, json: str | None, quiet: bool, full: bool
+    sources: dict[str, Path], options: RunOptions, states: int, json: str | None, quiet: bool, full: bool
 ) -> int:
     """One table for many robots."""
+    from rttrr_pin.validation.many import BASES, Task, validate_many
+    from rttrr_pin.validation.report import many_data, show_many
+
     allowed = ("--subject", "--reference", "--seed", "--sampling")
     refused = [word for word in options.unusual() if word.startswith("--") and word not in allowed]
     refused += ["--full"] * full + ["--reference more than once"] * (len(options.reference) > 1)

@@ -3,46 +3,50 @@
 from __future__ import annotations
 
 import shlex
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
-from typing import Annotated, Any, Literal
+from pathlib import Path
+from typing import Any, Literal
 
-import typer
+import click
 
 from rttrr_pin.core.payload import RandomPayload
 from rttrr_pin.core.wrench import Wrench
 from rttrr_pin.errors import InputError
 from rttrr_pin.loading import load
-from rttrr_pin.reporting.numbers import numbers_of
+from rttrr_pin.reporting.options import base, check_targets, friction, gravity, group, numbers_of, payload_link, seed
 from rttrr_pin.robot import Robot
 
-RobotArgument = Annotated[str, typer.Argument(help="A bundled robot's name, the path of a URDF, or example:NAME.")]
-Subject = Annotated[
-    str,
-    typer.Option(
+programs = group(
+    click.option(
+        "--subject",
+        default="kernel",
+        metavar="PROGRAM",
         help="The program that is judged: kernel, recursion, pinocchio, mujoco, lagrange; my_module:my_function; "
-        "a table of results (.csv, .parquet, .jsonl); or a program such as ./my_id."
+        "a table of results (.csv, .parquet, .jsonl); or a program such as ./my_id.",
     ),
-]
-Reference = Annotated[list[str] | None, typer.Option(help="What it is compared with, likewise. May be repeated.")]
-Seed = Annotated[int, typer.Option(help="The same seed gives the same states.")]
-Sampling = Annotated[
-    str, typer.Option(help="How states are drawn: uniform, corners, zeros, one-joint, large-velocities, mixed.")
-]
-Payload = Annotated[
-    str | None,
-    typer.Option(
-        help="What the robot exerts on its surroundings: 'random', or six numbers fx,fy,fz,nx,ny,nz [N, N m]."
+    click.option(
+        "--reference",
+        default=("pinocchio",),
+        multiple=True,
+        metavar="PROGRAM",
+        help="What it is compared with, likewise. May be repeated.",
     ),
-]
-PayloadLink = Annotated[str | None, typer.Option(help="The link whose frame it acts at; without it, the tool.")]
-PayloadAxes = Annotated[str, typer.Option(help="The axes of the six numbers: link or base.")]
-Gravity = Annotated[
-    str | None, typer.Option(help="Gravity field gx,gy,gz in the base frame [m/s^2]; without it 0,0,-9.81.")
-]
-Base = Annotated[str, typer.Option(help="fixed (bolted down) or floating.")]
-Friction = Annotated[bool, typer.Option("--friction", help="Take damping and friction of <dynamics> into tau.")]
-Json = Annotated[str | None, typer.Option(help="Write the outcome as JSON to this file; '-' is stdout.")]
-Quiet = Annotated[bool, typer.Option("--quiet", "-q", help="Print nothing but errors.")]
+)
+sampling = click.option(
+    "--sampling",
+    default="uniform",
+    help="How states are drawn: uniform, corners, zeros, one-joint, large-velocities, mixed.",
+)
+payload = click.option(
+    "--payload", help="What the robot exerts on its surroundings: 'random', or six numbers fx,fy,fz,nx,ny,nz [N, N m]."
+)
+payload_frame = group(
+    payload_link, click.option("--payload-axes", default="link", help="The axes of the six numbers: link or base.")
+)
+conditions = group(payload_frame, gravity, base, friction)
+drawn = group(seed, sampling, payload, conditions)
+"""The states that `validate` draws."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,12 +81,16 @@ class RunOptions:
         robot = [] if self.robot == "rttrr" else [self.robot]
         return shlex.join(["rttrr-pin", name, *robot, *self.unusual()])
 
+    def check_target(self, json: str | None, files: Iterable[Path] = ()) -> None:
+        """The result can be written, and overwrites nothing that is read."""
+        check_targets({"--json": json}, [self.robot, self.subject, *self.reference, *files])
+
     def load(self) -> Robot:
         """The robot."""
-        gravity: dict[str, Any] = {}
+        field: dict[str, Any] = {}
         if self.gravity is not None:
-            gravity["gravity"] = numbers_of("--gravity", self.gravity, 3)
-        return load(self.robot, base=self.base, friction=self.friction, **gravity)  # type: ignore[arg-type]
+            field["gravity"] = numbers_of("--gravity", self.gravity, 3)
+        return load(self.robot, base=self.base, friction=self.friction, **field)  # type: ignore[arg-type]
 
     def chosen(self) -> dict[str, Any]:
         """Programs and states, as the functions of the package take them."""

@@ -1,0 +1,117 @@
+"""Options that several commands have: decorators, put together in groups; and what is checked of them all."""
+
+from __future__ import annotations
+
+import errno
+import os
+import stat
+from collections.abc import Callable, Iterable, Mapping
+from pathlib import Path
+from typing import Any
+
+import click
+
+from rttrr_pin.errors import InputError
+
+Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
+
+
+def group(*options: Decorator) -> Decorator:
+    """Several options as one decorator, in the order of the help text."""
+
+    def decorate(function: Callable[..., Any]) -> Callable[..., Any]:
+        for option in reversed(options):
+            function = option(function)
+        return function
+
+    return decorate
+
+
+def robot(help: str = "A bundled robot's name, the path of a URDF, or example:NAME.") -> Decorator:
+    """The robot; without it, the bundled arm."""
+    return click.argument("robot", default="rttrr", help=help)
+
+
+def target(option: str, content: str) -> Decorator:
+    """Where a result is written: a file, or stdout."""
+    return click.option(option, metavar="FILE", help=f"Write {content} to this file; '-' is stdout.")
+
+
+def flag(*names: str, help: str) -> Decorator:
+    """A switch that is off unless it is named."""
+    return click.option(*names, is_flag=True, help=help)
+
+
+seed = click.option("--seed", default=0, help="The same seed gives the same states.")
+payload_link = click.option("--payload-link", help="The link whose frame it acts at; without it, the tool.")
+gravity = click.option(
+    "--gravity", metavar="X,Y,Z", help="Gravity field in the base frame [m/s^2]; without it 0,0,-9.81."
+)
+base = click.option("--base", default="fixed", help="fixed (bolted down) or floating.")
+friction = flag("--friction", help="Take damping and friction of <dynamics> into tau.")
+quiet = flag("--quiet", "-q", help="Print nothing but errors.")
+outcome = group(target("--json", "the outcome as JSON"), quiet)
+
+
+def numbers_of(option: str, text: str, count: int) -> list[float]:
+    """Numbers separated by commas or blanks."""
+    from rttrr_pin.urdf.checks import NUMBER
+
+    words = text.replace(",", " ").split()
+    numbers = [float(word) for word in words] if all(NUMBER.fullmatch(word) for word in words) else []
+    if len(numbers) != count:
+        example = ",".join("0" for _ in range(count))
+        raise InputError(f"{option} is {text!r}: expected {count} numbers separated by commas, such as {example}")
+    return numbers
+
+
+def check_targets(targets: Mapping[str, str | Path | None], sources: Iterable[str | Path] = ()) -> None:
+    """Before the work is done: every output can be written, none overwrites an input or another output.
+
+    Args:
+        targets: by option, the file to write; "-" is stdout, None nothing.
+        sources: what is read; words that are no file's name are passed over.
+
+    Raises:
+        InputError: an output is refused; says which, and why.
+    """
+    owners = {_identity(Path(source)): "the input" for source in sources}
+    for option, where in targets.items():
+        if where is None:
+            continue
+        place = "stdout" if str(where) == "-" else _writable(option, Path(where))
+        if place in owners:
+            owner, name = owners[place], "stdout" if place == "stdout" else where
+            if owner == "the input":
+                raise InputError(f"{option} {name} would overwrite the input: give it another file")
+            raise InputError(f"{owner} and {option} both go to {name}: give each a file of its own")
+        if place is not None:
+            owners[place] = option
+    owners.pop(None, None)
+
+
+def _identity(path: Path) -> object:
+    """What two names of one file share; None for a device or a pipe, which overwrites nothing."""
+    try:
+        status = path.stat()
+    except (OSError, ValueError):
+        return path.resolve()
+    return (status.st_dev, status.st_ino) if stat.S_ISREG(status.st_mode) else None
+
+
+def _writable(option: str, path: Path) -> object:
+    """The file's identity, where it can be written."""
+    try:
+        path.parent.stat()
+        try:
+            mode = path.stat().st_mode
+        except FileNotFoundError:
+            mode = stat.S_IFREG
+        replaced = stat.S_ISREG(mode)  # a device or a pipe is written to
+        code = 0 if os.access(path.resolve().parent if replaced else path, os.W_OK) else errno.EACCES
+        reason = "it is a folder" if stat.S_ISDIR(mode) else os.strerror(code) if code else ""
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or str(error)
+    if reason:
+        raise InputError(f"{option} {path} cannot be written: {reason}; choose another file")
+    return _identity(path)
