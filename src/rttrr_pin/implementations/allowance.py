@@ -13,7 +13,7 @@ Three rules, from most to least that is known of a program:
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import LINK_QUANTITIES, LinkWrenches
-from rttrr_pin.implementations.joint_maps import own_slices
+from rttrr_pin.implementations.library import norms, own_slices
 from rttrr_pin.implementations.protocol import Batch
 
 HANDOVER = 4 * EPS
@@ -79,10 +79,8 @@ def of_library(
 def default_allowance(batch: Batch) -> dict[str, Array]:
     """The allowance of a program of which nothing is known: eps for all terms, at each level of the tree."""
     model = batch.model
-    levels = np.zeros(len(model.links))
-    for i, joint in enumerate(model.joints):
-        levels[i] = 1 + (levels[joint.parent] if joint.parent >= 0 else 0)
-    each = OPERATIONS * EPS * (1 + levels.max(initial=0.0))
+    depth = levels([joint.parent for joint in model.joints]).max(initial=0.0)
+    each = OPERATIONS * EPS * (1 + depth)
     wide = {key: each * size for key, size in sizes(batch).items()}
     own = np.abs(batch.recursion[0].tau_joint)
     return {"tau": _of_carriers(model, wide) + HANDOVER * own} | wide
@@ -119,21 +117,40 @@ def sizes(batch: Batch) -> dict[str, Array]:
         w_dot[:, i] = w_dot_p + w_p * turn + turn_dot
         a[:, i] = a_p + reach[:, i] * (w_dot_p + w_p**2) + 2 * (w_p + turn) * slide + slide_dot + w[:, i] * v[:, i]
     turning = w_dot + w**2
-    mass = np.array([abs(link.mass) for link in model.links])
-    lever = np.array([np.linalg.norm(link.com) for link in model.links])
-    tensor = np.array([np.linalg.norm(link.inertia) for link in model.links])
+    mass, lever = norms(link.mass for link in model.links), norms(link.com for link in model.links)
+    tensor = norms(link.inertia for link in model.links)
     F = mass * (a + lever * turning)
     N = tensor * turning + mass * lever * (a + lever * turning)
     f, n = F.copy(), N + mass * v**2
     for load in batch.loads:
         f[:, load.link] += norm(np.atleast_2d(load.f))
         n[:, load.link] += norm(np.atleast_2d(load.n))
-    for i in reversed(range(len(model.links))):
-        p = model.joints[i].parent
+    add_inwards([joint.parent for joint in model.joints], f, n, reach)
+    return {"F": F, "N": N, "f": f, "n": n}
+
+
+def add_inwards(parents: Sequence[int], f: Array, n: Array, reach: Array) -> None:
+    """Add the sizes of forces and moments on each body to those on its parent, in place, (N, bodies) each.
+
+    Args:
+        parents: by body; -1 where there is none; parents before children.
+        f: sizes of forces.
+        n: sizes of moments.
+        reach: at most how far a body's origin is from its parent's [m]; zero where moments are about one point.
+    """
+    for i in reversed(range(len(parents))):
+        p = parents[i]
         if p >= 0:
             f[:, p] += f[:, i]
             n[:, p] += n[:, i] + reach[:, i] * f[:, i]
-    return {"F": F, "N": N, "f": f, "n": n}
+
+
+def levels(parents: Sequence[int]) -> Array:
+    """How many bodies there are from each one inward, itself included."""
+    counts = np.zeros(len(parents))
+    for i, p in enumerate(parents):
+        counts[i] = 1 + (counts[p] if p >= 0 else 0)
+    return counts
 
 
 def _of_carriers(model: Model, wide: Mapping[str, Array]) -> Array:

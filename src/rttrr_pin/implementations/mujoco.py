@@ -25,18 +25,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from functools import partial
 
 import mujoco
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.joints import FLOATING, PLANAR, JointType
+from rttrr_pin.core.joints import FLOATING, PLANAR
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.implementations.allowance import of_library
-from rttrr_pin.implementations.joint_maps import LibraryJoint, effects_force, reduce_forces
+from rttrr_pin.implementations.library import LibraryJoint, Motion, joint_forces, product, reduce_forces
 from rttrr_pin.implementations.mujoco_model import PREFIX, build, mujoco_joints, rotation_of
 from rttrr_pin.implementations.mujoco_rounding import rounding
 from rttrr_pin.implementations.protocol import Batch, Evaluation
@@ -64,16 +64,20 @@ class Mujoco:
 
     def evaluate(self, batch: Batch) -> Evaluation:
         """tau, F, N, f, n by MuJoCo."""
-        q, v, a, loads = batch.q, batch.v, batch.a, batch.loads
-        motion = Motion.of(self.joints, self.compiled, q, v, a)
-        record = self._run(motion, loads)
-        tau, own = self._driving_forces(motion, record.tau, q, v, a)
+        turns: dict[int, Array] = {}  # by first rate of each planar or floating joint: from {i} to its frame at zero
+        convert = partial(_in_slides, turns)
+        motion = Motion.of(self.joints, batch, self.compiled.nq, self.compiled.nv, convert)
+        record = self._run(motion, batch.loads)
         F, N = self._net(record)
         f, n = self._across_joints(record)
+        own = joint_forces(self.joints, batch, self.compiled.nv)
+        whole = self._in_links(record.tau, turns) + own
+        tau, tau_joint = (reduce_forces(self.model, self.joints, x) for x in (whole, own))
         values = {"tau": tau, "F": F, "N": N, "f": f, "n": n}
-        return Evaluation(values, of_library(batch, values, own, self._rounding(record, motion, loads)), own)
+        cancelling = self._rounding(record, motion, batch.loads)
+        return Evaluation(values, of_library(batch, values, tau_joint, cancelling), tau_joint)
 
-    def _run(self, motion: Motion, loads: Sequence[Load]) -> Record:
+    def _run(self, motion: Motion, loads: Sequence[Load]) -> _Record:
         """Call MuJoCo on each state and keep what it leaves in `data`, which the next call overwrites."""
         model, data, rows = self.compiled, self.data, len(motion.q)
         names = ("xpos", "xipos", "xmat", "cvel", "cacc", "cfrc_int")
@@ -94,7 +98,7 @@ class Mujoco:
             np.concatenate(views, out=kept[k])
         cut = np.split(kept, np.cumsum([view.size for view in views])[:-1], axis=1)
         xpos, xipos, xmat, cvel, cacc, cfrc_int = (x.reshape(rows, model.nbody, -1) for x in cut[:-1])
-        return Record(tau, xpos, xipos, xmat.reshape(rows, -1, 3, 3), cvel, cacc, cfrc_int, C=cut[-1])
+        return _Record(tau, xpos, xipos, xmat.reshape(rows, -1, 3, 3), cvel, cacc, cfrc_int, C=cut[-1])
 
     def _apply(self, body: int, f: Array, n: Array, in_base: bool, tau: Array) -> None:
         """A payload: minus it acts on the robot, at the centre of mass, in world axes; tau takes J^T of it."""
@@ -107,16 +111,17 @@ class Mujoco:
         data.xfrc_applied[body, 3:] -= moment
         mujoco.mj_applyFT(self.compiled, data, f, n, data.xpos[body], body, tau)
 
-    def _driving_forces(self, motion: Motion, theirs: Array, q: Array, v: Array, a: Array) -> tuple[Array, Array]:
-        """Tau with what the joints take themselves, and the latter alone, of the joints that follow no other."""
-        tau, own = motion.in_links(self.joints, theirs), np.zeros_like(theirs)
+    def _in_links(self, tau: Array, turns: dict[int, Array]) -> Array:
+        """MuJoCo's generalised forces as components of f and n in {i}."""
+        out = tau.copy()
         for joint in self.joints:
-            _, rates, accelerations = joint.own(q, v, a)
-            own[:, joint.v] = effects_force(joint.effects, rates, accelerations)
-        whole, own = (reduce_forces(self.model, self.joints, x) for x in (tau + own, own))
-        return whole, own
+            if joint.v.start in turns:
+                slides = slice(joint.v.start, joint.v.start + joint.joint.type.rotations.index(True))
+                back = np.swapaxes(turns[joint.v.start], 1, 2)
+                out[:, slides] = product(back, _in_space(tau[:, slides]))[:, : slides.stop - slides.start]
+        return out
 
-    def _net(self, record: Record) -> tuple[Array, Array]:
+    def _net(self, record: _Record) -> tuple[Array, Array]:
         """F, N: mass times acceleration of the centre of mass, and Euler's equation about it."""
         F, N = (np.empty((len(record.tau), len(self.bodies), 3)) for _ in "FN")
         for i, body in enumerate(self.bodies):
@@ -133,7 +138,7 @@ class Mujoco:
             N[:, i] = product(axes, moments * w_dot + np.cross(w, moments * w))
         return F, N
 
-    def _across_joints(self, record: Record) -> tuple[Array, Array]:
+    def _across_joints(self, record: _Record) -> tuple[Array, Array]:
         """f, n: what crosses each joint, moving or fixed."""
         f, n = (np.empty((len(record.tau), len(self.bodies), 3)) for _ in "fn")
         for i, body in enumerate(self.bodies):
@@ -143,7 +148,7 @@ class Mujoco:
             n[:, i] = product(turn, moment + np.cross(record.C - record.xpos[:, body], force))
         return f, n
 
-    def _rounding(self, record: Record, motion: Motion, loads: Sequence[Load]) -> dict[str, Array]:
+    def _rounding(self, record: _Record, motion: Motion, loads: Sequence[Load]) -> dict[str, Array]:
         """What MuJoCo's formulas round beyond ours, of each link."""
         sizes: dict[int, Array] = {}
         for load in loads:
@@ -154,7 +159,7 @@ class Mujoco:
 
 
 @dataclass(slots=True)
-class Record:
+class _Record:
     """What is kept of a batch, in world axes, by body.
 
     Attributes:
@@ -178,76 +183,28 @@ class Record:
     C: Array
 
 
-@dataclass(frozen=True, slots=True)
-class Motion:
-    """A batch in MuJoCo's coordinates, every joint moving by itself.
+def _in_slides(
+    turns: dict[int, Array], joint: LibraryJoint, q: Array, v: Array, a: Array
+) -> tuple[Array, Array, Array]:
+    """Our coordinates of a joint as MuJoCo's; the rotation R of a planar or floating one, (N, 3, 3), goes to `turns`.
 
-    Attributes:
-        q: (N, nq).
-        v: (N, nv).
-        a: (N, nv).
-        turns: by first rate of each planar or floating joint, what maps vectors of {i} to its frame at zero, (N, 3, 3).
+    Their rates and accelerations have the linear part along the frame at zero: R v and R (a + w x v).
     """
-
-    q: Array
-    v: Array
-    a: Array
-    turns: dict[int, Array]
-
-    @classmethod
-    def of(cls, joints: Sequence[LibraryJoint], compiled: Any, q: Array, v: Array, a: Array) -> Motion:
-        """From our coordinates."""
-        rows = len(q)
-        motion = cls(np.empty((rows, compiled.nq)), np.empty((rows, compiled.nv)), np.empty((rows, compiled.nv)), {})
-        for joint in joints:
-            q_, v_, a_ = joint.own(q, v, a)
-            if joint.type == FLOATING:
-                q_ = q_[:, [0, 1, 2, 6, 3, 4, 5]]
-            turned = _turn(joint.type, q_)
-            if turned is not None:
-                v_, a_ = _slides(joint.type, turned, v_, a_)
-                motion.turns[joint.v.start] = turned
-            motion.q[:, joint.q], motion.v[:, joint.v], motion.a[:, joint.v] = q_, v_, a_
-        return motion
-
-    def in_links(self, joints: Sequence[LibraryJoint], tau: Array) -> Array:
-        """MuJoCo's generalised forces as components of f and n in {i}."""
-        out = tau.copy()
-        for joint in joints:
-            if joint.v.start in self.turns:
-                slides = slice(joint.v.start, joint.v.start + joint.type.rotations.index(True))
-                back = np.swapaxes(self.turns[joint.v.start], 1, 2)
-                out[:, slides] = product(back, _in_space(tau[:, slides]))[:, : slides.stop - slides.start]
-        return out
-
-
-def _turn(kind: JointType, q: Array) -> Array | None:
-    """The rotation of a planar or floating joint, (N, 3, 3), from MuJoCo's coordinates; None of another."""
-    if kind == PLANAR:
-        half = np.stack([np.cos(q[:, 2] / 2), 0 * q[:, 2], 0 * q[:, 2], np.sin(q[:, 2] / 2)], axis=1)
-    elif kind == FLOATING:
-        half = q[:, 3:]
+    if joint.joint.type == PLANAR:
+        half, none = q[:, 2] / 2, 0 * q[:, 2]
+        quaternions, w = np.stack([np.cos(half), none, none, np.sin(half)], axis=1), np.pad(v[:, 2:], ((0, 0), (2, 0)))
+    elif joint.joint.type == FLOATING:
+        q = q[:, [0, 1, 2, 6, 3, 4, 5]]
+        quaternions, w = q[:, 3:], v[:, 3:]
     else:
-        return None
-    return np.array([rotation_of(x) for x in half]).reshape(-1, 3, 3)
-
-
-def _slides(kind: JointType, turned: Array, v: Array, a: Array) -> tuple[Array, Array]:
-    """Rates and accelerations with the linear part along the frame at zero: R v and R (a + w x v)."""
-    linear = kind.rotations.index(True)
-    w = v[:, linear:] if kind == FLOATING else np.pad(v[:, linear:], ((0, 0), (2, 0)))
+        return q, v, a
+    turn = turns[joint.v.start] = np.array([rotation_of(x) for x in quaternions]).reshape(-1, 3, 3)
+    linear = joint.joint.type.rotations.index(True)
     v_l, a_l = _in_space(v[:, :linear]), _in_space(a[:, :linear])
-    v_out = product(turned, v_l)[:, :linear]
-    a_out = product(turned, a_l + np.cross(w, v_l))[:, :linear]
-    return np.hstack([v_out, v[:, linear:]]), np.hstack([a_out, a[:, linear:]])
+    v_out, a_out = (product(turn, x)[:, :linear] for x in (v_l, a_l + np.cross(w, v_l)))
+    return q, np.hstack([v_out, v[:, linear:]]), np.hstack([a_out, a[:, linear:]])
 
 
 def _in_space(x: Array) -> Array:
     """Vectors of the plane or of space, (N, 2) or (N, 3), in space."""
     return np.pad(x, ((0, 0), (0, 3 - x.shape[1])))
-
-
-def product(matrix: Array, vectors: Array) -> Array:
-    """Matrix times vector for each row of (N, 3); the same bits in any batch, as a product of the whole has not."""
-    x, y, z = (vectors[:, k, None] for k in range(3))
-    return matrix[..., :, 0] * x + matrix[..., :, 1] * y + matrix[..., :, 2] * z

@@ -1,7 +1,7 @@
 """The model that MuJoCo built, link by link, and what in it differs from the file.
 
-MuJoCo's importer reads the file on its own: names, tree, placements, axes, masses, centres of mass and tensors are held
-against expected as it read them. What its compiler would do to them next is kept away:
+MuJoCo's importer reads the file on its own: names, tree, placements, axes, masses, centres of mass and tensors are
+compared with the file as it read them. What its compiler would do to them next is kept away:
 
 - Fixed links are fused into what carries them, the root into the world: `fusestatic` is off, and every link is a body.
 - Shapes, meshes and a `<mujoco>` section are left out of the text: dynamics take `<inertial>` alone.
@@ -12,7 +12,6 @@ against expected as it read them. What its compiler would do to them next is kep
 - `<mimic>` becomes a soft constraint (in older versions nothing): left out, once it is compared. Followers are driven
   along, as for every library.
 - A floating joint must hang on the world: three slides and a ball are the same joint, and may hang anywhere.
-- Before version 3.14 the `rpy` of `<inertial>` is dropped: a tensor that it turns is a difference, and an error.
 """
 
 from __future__ import annotations
@@ -30,9 +29,17 @@ from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints import CONTINUOUS, FIXED, FLOATING, PLANAR, PRISMATIC, REVOLUTE
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.errors import ImplementationError, ModelMismatchError
-from rttrr_pin.implementations.joint_maps import LibraryJoint, own_slices
-from rttrr_pin.implementations.model_comparison import differs
-from rttrr_pin.implementations.registry import urdf_of
+from rttrr_pin.implementations.library import (
+    LibraryJoint,
+    differs,
+    followers,
+    inertia_differences,
+    library_joints,
+    limit_differences,
+    mimic_differences,
+    placement_differences,
+    urdf_of,
+)
 
 PREFIX = "link "
 """Before the name of each link: MuJoCo has a body of its own that is called world."""
@@ -42,20 +49,17 @@ END = "."
 
 DROPPED = ("mujoco", "visual", "collision")
 
-TURNS_TENSORS = tuple(int(part) for part in mujoco.__version__.split(".")[:2]) >= (3, 14)
-"""Whether MuJoCo heeds the rpy of `<inertial>`."""
-
-SLIDE, HINGE, INTERVAL = mujoco.mjtJoint.mjJNT_SLIDE, mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_BALL
+SLIDE, HINGE, BALL = mujoco.mjtJoint.mjJNT_SLIDE, mujoco.mjtJoint.mjJNT_HINGE, mujoco.mjtJoint.mjJNT_BALL
 
 MADE_OF = {
     REVOLUTE: (HINGE,),
     CONTINUOUS: (HINGE,),
     PRISMATIC: (SLIDE,),
     PLANAR: (SLIDE, SLIDE, HINGE),
-    FLOATING: (SLIDE, SLIDE, SLIDE, INTERVAL),
+    FLOATING: (SLIDE, SLIDE, SLIDE, BALL),
     FIXED: (),
 }
-"""MuJoCo's joints that make one of expected, in the order in which they move their body."""
+"""MuJoCo's joints that make one of ours, in the order in which they move their body."""
 
 PARTS = {PLANAR: ("_TX", "_TY", "_RZ"), FIXED: ()}
 """What MuJoCo appends to the name of a joint that it makes of several, and of one that it does not make."""
@@ -72,15 +76,13 @@ def build(model: Model) -> Any:
         try:
             spec = mujoco.MjSpec.from_string(_bare(urdf_of(model, "MuJoCo")))
             bodies = {body.name: body for body in spec.bodies}
-            found = [*_differences(model, bodies), *_mimic_differences(model, spec)]
+            if lines := [*_differences(model, bodies), *_mimic_differences(model, spec)]:
+                raise ModelMismatchError("MuJoCo", lines)
             read = {name: _Inertial(body) for name, body in bodies.items() if name.startswith(PREFIX)}
-            if not found:
-                _prepare(spec, model, bodies)
-                compiled = spec.compile()
+            _prepare(spec, model, bodies)
+            compiled = spec.compile()
         except ValueError as error:
             raise ImplementationError(f"MuJoCo refuses the URDF of {model.name!r}: {str(error).strip()}") from error
-    if found:
-        raise ModelMismatchError("MuJoCo", found)
     for name, inertial in read.items():
         inertial.write(compiled, compiled.body(name).id)
     compiled.opt.gravity[:] = model.gravity
@@ -89,15 +91,14 @@ def build(model: Model) -> Any:
 
 
 def mujoco_joints(model: Model, compiled: Any) -> list[LibraryJoint]:
-    """The moving joints, in our order."""
-    found = []
-    for joint, link, (own_q, own_v) in zip(model.joints, model.links, own_slices(model), strict=True):
-        if joint.nv:
-            first = compiled.body_jntadr[compiled.body(PREFIX + link.name).id]
-            q, v = int(compiled.jnt_qposadr[first]), int(compiled.jnt_dofadr[first])
-            at_q, at_v = slice(q, q + joint.nq), slice(v, v + joint.nv)
-            found.append(LibraryJoint(joint.type, at_q, at_v, own_q, own_v, joint.mimic, joint.effects))
-    return found
+    """The moving joints, in our order; of those that MuJoCo makes one of, the number of the first."""
+
+    def place(joint: Joint, link: Link) -> tuple[int, slice, slice]:
+        first = int(compiled.body_jntadr[compiled.body(PREFIX + link.name).id])
+        q, v = int(compiled.jnt_qposadr[first]), int(compiled.jnt_dofadr[first])
+        return first, slice(q, q + joint.nq), slice(v, v + joint.nv)
+
+    return library_joints(model, place)
 
 
 def rotation_of(quaternion: Any) -> Array:
@@ -128,7 +129,7 @@ class _Inertial:
         self.com: Array = np.nan_to_num(np.array(body.ipos))  # nan: the file has no <inertial>
         xx, yy, zz, xy, xz, yz = np.nan_to_num(np.array(body.fullinertia))
         tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-        R = rotation_of(body.iquat) if TURNS_TENSORS else np.eye(3)
+        R = rotation_of(body.iquat)
         turned = R @ tensor @ R.T
         self.inertia: Array = (turned + turned.T) / 2
 
@@ -184,64 +185,47 @@ def _differences(model: Model, bodies: dict[str, Any]) -> Iterator[str]:
         return
     for i, (joint, link) in enumerate(zip(model.joints, model.links, strict=True)):
         body = bodies[PREFIX + link.name]
-        yield from _inertia_differences(link, _Inertial(body))
+        inertial = _Inertial(body)
+        read = inertial.mass, inertial.com, inertial.inertia
+        yield from inertia_differences(link, (link.mass, link.com, link.inertia), read)
         if not (model.floating and i == 0):
             yield from _joint_differences(model, joint, body)
 
 
-def _inertia_differences(link: Link, built: _Inertial) -> Iterator[str]:
-    here = f"link {link.name!r}"
-    yield from differs(f"{here} mass", link.mass, built.mass)
-    if link.mass:
-        yield from differs(f"{here} centre of mass", link.com, built.com)
-    yield from differs(f"{here} inertia", link.inertia, built.inertia)
-
-
 def _joint_differences(model: Model, joint: Joint, body: Any) -> Iterator[str]:
-    """Placement, kind, axis, damping, friction and range of a joint."""
+    """Placement, type, axis, damping, friction and limits of a joint; MuJoCo has no limit on rates."""
     here = f"joint {joint.name!r}"
     parent = model.links[joint.parent].name if joint.parent >= 0 else model.root.name
     if body.parent.name != PREFIX + parent:
         yield f"{here}: hangs on {body.parent.name.removeprefix(PREFIX)!r}, the file says {parent!r}"
-    yield from differs(f"{here} placement R", joint.R, rotation_of(body.quat), 1.0)
-    yield from differs(f"{here} placement p", joint.p, body.pos)
+    yield from placement_differences(joint, (joint.R, joint.p), rotation_of(body.quat), body.pos)
     made_of = MADE_OF[joint.type] if joint.type != FLOATING else (mujoco.mjtJoint.mjJNT_FREE,)
-    kinds, names = tuple(built.type for built in body.joints), [built.name for built in body.joints]
+    types, names = tuple(built.type for built in body.joints), [built.name for built in body.joints]
     if names != [joint.name + END + part for part in PARTS.get(joint.type, ("",))]:
         carried_by = ", ".join(name.replace(END, "") for name in names) or "no joint"
         yield f"link {body.name.removeprefix(PREFIX)!r}: carried by {carried_by}, the file says {joint.name}"
-    elif kinds != made_of:
-        yield f"{here}: made of {', '.join(map(str, kinds)) or 'none'}, the file says {joint.type}"
+    elif types != made_of:
+        yield f"{here}: made of {', '.join(map(str, types)) or 'none'}, the file says {joint.type}"
     elif joint.type.has_axis:
         (built,) = body.joints
         yield from differs(f"{here} axis", joint.axis, unit(built.axis), 1.0)
-        yield from _limit_differences(here, joint, built)
-
-
-def _limit_differences(here: str, joint: Joint, built: Any) -> Iterator[str]:
-    """Damping and friction, and limits where the file sets them; MuJoCo has none on rates."""
-    limits = joint.limits
-    yield from differs(f"{here} damping", joint.dynamics.damping, np.ravel(built.damping)[0])
-    yield from differs(f"{here} friction", joint.dynamics.friction, built.frictionloss)
-    compared = [("effort limit", limits.effort, built.actfrcrange[1])] if limits.effort > 0.0 else []
-    if joint.type.limits != "none":
-        compared += [("lower limit", limits.lower, built.range[0]), ("upper limit", limits.upper, built.range[1])]
-    for what, expected, number in compared:
-        if np.isfinite(expected):
-            yield from differs(f"{here} {what}", expected, number)
+        limits = {"damping": np.ravel(built.damping)[0], "friction": built.frictionloss}
+        limits |= {"lower limit": built.range[0], "upper limit": built.range[1]}
+        if joint.limits.effort > 0.0:  # at 0 MuJoCo sets none
+            limits["effort limit"] = built.actfrcrange[1]
+        yield from limit_differences(joint, limits)
 
 
 def _mimic_differences(model: Model, spec: Any) -> Iterator[str]:
-    """Multiplier and offset of followers, where MuJoCo reads them."""
+    """Whom followers follow, and how, where MuJoCo reads it."""
     read = {equality.name1.removesuffix(END): equality for equality in spec.equalities}
-    for joint in model.joints:
-        if joint.mimic is not None and not joint.mimic.rounded and joint.name in read:
-            here, built = f"joint {joint.name!r} mimic", read[joint.name]
-            leader = model.joints[joint.mimic.joint].name
+    for joint in followers(model):
+        if joint.mimic is not None and joint.name in read:
+            built, leader = read[joint.name], model.joints[joint.mimic.joint].name
             if built.name2 != leader + END:
-                yield f"{here}: follows {built.name2.removesuffix(END)!r}, the file says {leader!r}"
-            yield from differs(f"{here} multiplier", joint.mimic.multiplier, built.data[1])
-            yield from differs(f"{here} offset", joint.mimic.offset, built.data[0])
+                follows = built.name2.removesuffix(END)
+                yield f"joint {joint.name!r} mimic: follows {follows!r}, the file says {leader!r}"
+            yield from mimic_differences(joint, built.data[1], built.data[0])
 
 
 def _prepare(spec: Any, model: Model, bodies: dict[str, Any]) -> None:

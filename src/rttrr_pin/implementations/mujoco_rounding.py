@@ -25,6 +25,7 @@ import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.scalars import EPS
+from rttrr_pin.implementations.allowance import add_inwards, levels, norm
 
 OPERATIONS = 4
 """Roundings in eps on the way of each term over one level: a quaternion product, its matrix, a sum."""
@@ -65,7 +66,7 @@ def rounding(
         C: the point that MuJoCo's spatial vectors are about, (N, 3) [m].
         loads: by body, the size of force and moment that act on it, (N, 2).
     """
-    parents = compiled.body_parentid
+    parents = [-1, *compiled.body_parentid[1:]]
     motion = _outwards(compiled, qvel, qacc, xpos, C)
     w, v, w_dot, v_dot, rho = motion.w, motion.v, motion.w_dot, motion.v_dot, motion.rho
     mass = np.abs(compiled.body_mass)
@@ -76,15 +77,13 @@ def rounding(
     own_moment = tensor * turning
     moment = own_moment + mass * (v**2 + arm * (v_dot + 2 * w * v) + arm**2 * turning)
 
-    weight = OPERATIONS * EPS * (_levels(parents) + FIXED)
+    weight = OPERATIONS * EPS * (levels(parents) - 1 + FIXED)
     out = {"F": weight * force, "N": weight * own_moment}
     f, n = weight * force, weight * moment
     for body, sizes in loads.items():
         f[:, body] += weight[body] * sizes[:, 0]
         n[:, body] += weight[body] * (sizes[:, 1] + arm[:, body] * sizes[:, 0])
-    for body in reversed(range(1, len(parents))):
-        f[:, parents[body]] += f[:, body]
-        n[:, parents[body]] += n[:, body]
+    add_inwards(parents, f, n, np.zeros_like(rho))  # all moments are about C
     return out | {"f": f, "n": n + rho * f}
 
 
@@ -113,17 +112,5 @@ def _outwards(compiled: Any, qvel: Array, qacc: Array, xpos: Array, C: Array) ->
 def _by_body(compiled: Any, x: Array) -> list[tuple[Array, Array]]:
     """The norms of what slides and of what turns, for each body, (N,) each."""
     slides = compiled.jnt_type[compiled.dof_jntid] == mujoco.mjtJoint.mjJNT_SLIDE
-    out = []
-    for body in range(compiled.nbody):
-        of_body = compiled.dof_bodyid == body
-        slid, turned = (np.linalg.norm(x[:, of_body & kind], axis=1) for kind in (slides, ~slides))
-        out.append((slid, turned))
-    return out
-
-
-def _levels(parents: Array) -> Array:
-    """How many bodies there are from the world to each one."""
-    levels = np.zeros(len(parents))
-    for body in range(1, len(parents)):
-        levels[body] = levels[parents[body]] + 1
-    return levels
+    of_bodies = [compiled.dof_bodyid == body for body in range(compiled.nbody)]
+    return [(norm(x[:, of_body & slides]), norm(x[:, of_body & ~slides])) for of_body in of_bodies]

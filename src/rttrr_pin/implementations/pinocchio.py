@@ -9,31 +9,39 @@
 
 The payload enters through `fext`, with the opposite sign: `fext` is what the surroundings exert on the robot.
 
+| joint | our q | Pinocchio's q |
+|---|---|---|
+| continuous | angle | cosine, sine |
+| planar | x, y, theta | x, y, cosine, sine |
+| floating | position, quaternion (x, y, z, w) | the same |
+| one that follows another | none | its own |
+
+Pinocchio's mimic joints raise where the followed joint sorts later. So every joint moves by itself here.
+
 Pinocchio has a function for fixed joints, `computeSupportedForceByFrame`, but it adds every moving joint of the rigid
 body, whichever link of it they hang on, and none if the body is the universe: it is right where the body has no branch.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 import pinocchio as pin
 
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.joints import CONTINUOUS, PLANAR
 from rttrr_pin.core.model import ROOT_JOINT, UNIVERSE, Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.errors import ImplementationError, ModelMismatchError
-from rttrr_pin.implementations.allowance import of_library
-from rttrr_pin.implementations.joint_maps import reduce_forces
-from rttrr_pin.implementations.pinocchio_joints import Motion, driving_forces, expand, pin_joints, reach
-from rttrr_pin.implementations.pinocchio_model import differences, pin_links, product
+from rttrr_pin.implementations.allowance import norm, of_library
+from rttrr_pin.implementations.library import LibraryJoint, Motion, joint_forces, product, reduce_forces, urdf_of
+from rttrr_pin.implementations.pinocchio_model import differences, pin_joints, pin_links
 from rttrr_pin.implementations.pinocchio_rounding import OPERATIONS, rounding
 from rttrr_pin.implementations.protocol import Batch, Evaluation
-from rttrr_pin.implementations.registry import urdf_of
 
 
 class Pinocchio:
@@ -62,32 +70,36 @@ class Pinocchio:
             self.pin_model = pin.buildModelFromXML(urdf, *root)
         except (ValueError, RuntimeError) as error:
             raise ImplementationError(f"Pinocchio refuses the URDF of {model.name!r}: {str(error).strip()}") from error
-        found = differences(model, self.pin_model)
-        if found:
-            raise ModelMismatchError("Pinocchio", found)
+        if lines := differences(model, self.pin_model):
+            raise ModelMismatchError("Pinocchio", lines)
         self.pin_model.gravity.linear = np.array(model.gravity)
         self.model = model
         self.joints = pin_joints(model, self.pin_model)
         for joint in self.joints:
-            self.pin_model.armature[joint.v] = joint.effects.armature
+            self.pin_model.armature[joint.v] = joint.joint.effects.armature
         self.links = pin_links(model, self.pin_model)
         self.data = self.pin_model.createData()
-        self._held = [self._held_by(i) for i in range(len(self.links))]
-        hanging = {joint for held in self._held for joint in held.hanging}
-        self._hanging = {joint: place for place, joint in enumerate(sorted(hanging))}
+        self._held = {i: self._held_by(i) for i, link in enumerate(self.links) if link.fixed}
+        hanging = {joint for _, joints in self._held.values() for joint in joints}
+        self._hanging = {joint: column for column, joint in enumerate(sorted(hanging))}
 
     def evaluate(self, batch: Batch) -> Evaluation:
         """tau, F, N, f, n by Pinocchio; a continuous joint's coordinate is its angle."""
-        motion = expand(self.joints, self.pin_model, batch.q, batch.v, batch.a)
-        turned = self._in_link_axes(batch.loads, motion.q)
-        record = self._run(motion, turned)
+        motion = Motion.of(self.joints, batch, self.pin_model.nq, self.pin_model.nv, _in_cosines)
+        loads = self._in_link_axes(batch.loads, motion.q)
+        record = self._run(motion, loads)
         F, N = self._net(record)
-        f, n = self._across_joints(record, F, N, turned)
-        tau, tau_joint = (
-            reduce_forces(self.model, self.joints, x) for x in driving_forces(self.joints, record.tau, motion)
-        )
+        f, n, moments = self._across_joints(record, F, N, loads)
+        own = joint_forces(self.joints, batch, self.pin_model.nv)
+        # `rnea` has armature in it, and neither damping nor friction.
+        whole = record.tau + joint_forces(self.joints, batch, self.pin_model.nv, armature=False)
+        tau, tau_joint = (reduce_forces(self.model, self.joints, x) for x in (whole, own))
         values = {"tau": tau, "F": F, "N": N, "f": f, "n": n}
-        cancelling = self._rounding(record, motion, F, turned)
+        cancelling = rounding(self.pin_model, self.links, record.spatial, self._reach(motion))
+        for i, (links, hanging) in self._held.items():
+            if not hanging and not any(self.links[k].massive for k in links):
+                cancelling["f"][:, i] = cancelling["n"][:, i] = 0.0  # nothing but loads acts there
+        cancelling["n"] += OPERATIONS * EPS * moments
         return Evaluation(values, of_library(batch, values, tau_joint, cancelling), tau_joint)
 
     def _in_link_axes(self, loads: Sequence[Load], q: Array) -> list[Load]:
@@ -96,30 +108,27 @@ class Pinocchio:
         for load in loads:
             f, n = (np.broadcast_to(x, (len(q), 3)) for x in (load.f, load.n))
             if load.in_base:
-                turns = self._base_to_link(load.link, q)
+                link, turns = self.links[load.link], np.empty((len(q), 3, 3))
+                for k in range(len(q)):
+                    pin.forwardKinematics(self.pin_model, self.data, q[k])
+                    turns[k] = (self.data.oMi[link.joint].rotation @ link.R).T
                 f, n = (product(turns, x) for x in (f, n))
             out.append(Load(load.link, f, n))
         return out
 
-    def _base_to_link(self, i: int, q: Array) -> Array:
-        """The rotation from base axes to those of link i, (N, 3, 3), from Pinocchio's placements."""
-        link, turns = self.links[i], np.empty((len(q), 3, 3))
-        for k in range(len(q)):
-            pin.forwardKinematics(self.pin_model, self.data, q[k])
-            turns[k] = (self.data.oMi[link.joint].rotation @ link.R).T
-        return turns
-
     def _run(self, motion: Motion, loads: Sequence[Load]) -> _Record:
         """Call `rnea` on each state and keep what it leaves in `data`, whose entries the next call overwrites."""
-        model, data = self.pin_model, self.data
-        rows = len(motion.q)
+        model, data, rows = self.pin_model, self.data, len(motion.q)
         views = [x.vector for name in ("f", "v", "a_gf") for x in getattr(data, name)]
         placements = [data.liMi[joint] for joint in self._hanging]
         parts = [x for M in placements for x in (*M.rotation.T, M.translation)]  # rows of R^T, then p: views too
         spatial, hanging = np.empty((rows, 18 * model.njoints)), np.empty((rows, 12 * len(placements)))
         tau = np.empty((rows, model.nv))
         external = pin.StdVec_Force([pin.Force.Zero()] * model.njoints)
-        forces = self._external(loads, rows)
+        forces: dict[int, Array] = {}  # minus the sum of the loads, by joint
+        for load in loads:
+            link = self.links[load.link]
+            forces[link.joint] = forces.get(link.joint, np.zeros((rows, 6))) - link.to_joint(load.f, load.n)
         targets = [(external[joint].vector, values) for joint, values in forces.items()]
         for k, (q, v, a) in enumerate(zip(motion.q, motion.v, motion.a, strict=True)):
             for target, values in targets:
@@ -129,14 +138,6 @@ class Pinocchio:
             if parts:
                 np.concatenate(parts, out=hanging[k])
         return _Record(tau, spatial.reshape(rows, 3, model.njoints, 6), hanging.reshape(rows, len(placements), 4, 3))
-
-    def _external(self, loads: Sequence[Load], rows: int) -> dict[int, Array]:
-        """`fext` by joint, (N, 6): minus the sum of the loads."""
-        total: dict[int, Array] = {}
-        for load in loads:
-            link = self.links[load.link]
-            total[link.joint] = total.get(link.joint, np.zeros((rows, 6))) - link.to_joint(load.f, load.n)
-        return total
 
     def _net(self, record: _Record) -> tuple[Array, Array]:
         """F, N: mass times acceleration of the centre of mass, and Euler's equation about it."""
@@ -152,69 +153,61 @@ class Pinocchio:
             N[:, i] = product(link.inertia, w_dot) + np.cross(w, product(link.inertia, w))
         return F, N
 
-    def _across_joints(self, record: _Record, F: Array, N: Array, loads: Sequence[Load]) -> tuple[Array, Array]:
-        """f, n: what crosses each joint, moving or fixed."""
-        out = np.zeros((len(record.tau), len(self.links), 6))
+    def _across_joints(self, record: _Record, F: Array, N: Array, loads: Sequence[Load]) -> tuple[Array, Array, Array]:
+        """f, n: what crosses each joint, moving or fixed; and the moments that round on the way, (N, links).
+
+        Behind a fixed joint, forces go to the body's origin and from there to the link's: their moments about both
+        round.
+        """
+        rows = len(record.tau)
+        out, moments = np.zeros((rows, len(self.links), 6)), np.zeros((rows, len(self.links)))
         for i, link in enumerate(self.links):
             if not link.fixed:
                 out[:, i] = record.spatial[:, 0, link.joint]
                 continue
-            held = self._held[i]
-            total = np.zeros((len(record.tau), 6))
-            for k in held.links:
-                moment = N[:, k] + np.cross(self.links[k].com, F[:, k])
-                total += self.links[k].to_joint(F[:, k], moment)
-            for joint in held.hanging:
-                R_T, p = record.hanging[:, self._hanging[joint], :3], record.hanging[:, self._hanging[joint], 3]
-                R = np.swapaxes(R_T, -1, -2)
-                f, n = (product(R, x) for x in np.split(record.spatial[:, 0, joint], 2, axis=-1))
-                total += np.concatenate([f, n + np.cross(p, f)], axis=1)
-            carried = [load for load in loads if load.link in held.links]
-            for load in carried:
-                if load.link != i:
-                    total += self.links[load.link].to_joint(load.f, load.n)
+            total = np.zeros((rows, 6))
+            for arm, f, at_body in self._behind(i, record, F, N, loads):
+                total += at_body
+                moments[:, i] += (link.arm + arm) * norm(f)
             out[:, i] = link.from_joint(total)
-            for load in carried:
+            for load in loads:
                 if load.link == i:
                     out[:, i] += np.concatenate([load.f, load.n], axis=1)
-        return out[..., :3], out[..., 3:]
+        return out[..., :3], out[..., 3:], moments
 
-    def _held_by(self, i: int) -> _Held:
-        """What link i is one rigid body with, further out, and the moving joints that hang on that."""
-        parents = [joint.parent for joint in self.model.joints]
-        links = [
-            k for k, link in enumerate(self.links) if link.joint == self.links[i].joint and i in self.model.path(k)
-        ]
-        hanging = [link.joint for k, link in enumerate(self.links) if not link.fixed and parents[k] in links]
-        return _Held(links, hanging if self.links[i].fixed else [])
+    def _behind(
+        self, i: int, record: _Record, F: Array, N: Array, loads: Sequence[Load]
+    ) -> Iterator[tuple[float | Array, Array, Array]]:
+        """All that acts behind fixed joint i: its distance from the body's origin, force, and wrench there, (N, 6)."""
+        links, hanging = self._held[i]
+        for k in links:
+            link = self.links[k]
+            at_body = link.to_joint(F[:, k], N[:, k] + np.cross(link.com, F[:, k]))
+            yield link.arm + float(np.linalg.norm(link.com)), F[:, k], at_body
+        for joint in hanging:
+            placement = record.hanging[:, self._hanging[joint]]
+            R, p = np.swapaxes(placement[:, :3], -1, -2), placement[:, 3]
+            force, moment = np.split(record.spatial[:, 0, joint], 2, axis=-1)
+            f, n = product(R, force), product(R, moment)
+            yield norm(p), force, np.concatenate([f, n + np.cross(p, f)], axis=1)
+        for load in loads:
+            if load.link in links and load.link != i:
+                link = self.links[load.link]
+                yield link.arm, load.f, link.to_joint(load.f, load.n)
 
-    def _rounding(self, record: _Record, motion: Motion, F: Array, loads: Sequence[Load]) -> dict[str, Array]:
-        """What Pinocchio's formulas round beyond ours, and what moving payloads and forces between frames does."""
-        out = rounding(self.pin_model, self.links, record.spatial, reach(self.joints, self.pin_model, motion))
-        arms = [float(np.linalg.norm(link.p)) for link in self.links]
-        for i, link in enumerate(self.links):
-            if not link.fixed:
-                continue
-            held = self._held[i]
-            if not held.hanging and not any(self.links[k].mass or self.links[k].inertia.any() for k in held.links):
-                out["f"][:, i] = out["n"][:, i] = 0.0  # nothing but loads acts there
-            # Forces go to the joint's origin and from there to the link's: their moments about both round.
-            moved = [(arms[k] + float(np.linalg.norm(self.links[k].com)), F[:, k]) for k in held.links]
-            moved += [(arms[load.link], load.f) for load in loads if load.link in held.links and load.link != i]
-            for joint in held.hanging:
-                p, f = record.hanging[:, self._hanging[joint], 3], record.spatial[:, 0, joint, :3]
-                moved.append((np.linalg.norm(p, axis=-1), f))
-            for arm, f in moved:
-                out["n"][:, i] += OPERATIONS * EPS * (arms[i] + arm) * np.linalg.norm(f, axis=-1)
+    def _held_by(self, i: int) -> tuple[list[int], list[int]]:
+        """The links that are one rigid body with link i, further out, and Pinocchio's moving joints on them."""
+        body, parents = self.links[i].joint, [joint.parent for joint in self.model.joints]
+        links = [k for k, link in enumerate(self.links) if link.joint == body and i in self.model.path(k)]
+        return links, [link.joint for k, link in enumerate(self.links) if not link.fixed and parents[k] in links]
+
+    def _reach(self, motion: Motion) -> Array:
+        """At most how far each joint's origin is from that of the joint further in, (N, njoints) [m]."""
+        out = np.tile([np.linalg.norm(x.translation) for x in self.pin_model.jointPlacements], (len(motion.q), 1))
+        for joint in self.joints:
+            lengths = sum(own.unit == "m" for own in joint.joint.type.coordinates)  # they come first
+            out[:, joint.number] += norm(motion.q[:, joint.q][:, :lengths])
         return out
-
-
-@dataclass(frozen=True, slots=True)
-class _Held:
-    """Links of one rigid body, by our index, and moving joints that hang on them, by Pinocchio's."""
-
-    links: list[int]
-    hanging: list[int]
 
 
 @dataclass(slots=True)
@@ -230,3 +223,10 @@ class _Record:
     tau: Array
     spatial: Array
     hanging: Array
+
+
+def _in_cosines(joint: LibraryJoint, q: Array, v: Array, a: Array) -> tuple[Array, Array, Array]:
+    """Our coordinates of a joint as Pinocchio's: an angle without limits as cosine and sine."""
+    if joint.joint.type in (CONTINUOUS, PLANAR):
+        q = np.hstack([q[:, :-1], np.cos(q[:, -1:]), np.sin(q[:, -1:])])
+    return q, v, a

@@ -14,8 +14,18 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints import FLOATING
-from rttrr_pin.core.model import Model
-from rttrr_pin.implementations.model_comparison import differs
+from rttrr_pin.core.model import Link, Model
+from rttrr_pin.implementations.library import (
+    LibraryJoint,
+    differs,
+    followers,
+    inertia_differences,
+    library_joints,
+    limit_differences,
+    mimic_differences,
+    placement_differences,
+    product,
+)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -40,6 +50,16 @@ class PinLink:
     com: Array
     inertia: Array
 
+    @property
+    def arm(self) -> float:
+        """The distance of its origin from the joint's [m]."""
+        return float(np.linalg.norm(self.p))
+
+    @property
+    def massive(self) -> bool:
+        """Whether it has any inertia."""
+        return bool(self.mass or self.inertia.any())
+
     def to_joint(self, f: Array, n: Array) -> Array:
         """A force and a moment at the link's origin, (N, 3) each, at the joint's: (N, 6)."""
         f, n = product(self.R, f), product(self.R, n)
@@ -52,14 +72,15 @@ class PinLink:
         return np.concatenate([product(self.R.T, f), product(self.R.T, n)], axis=1)
 
 
-def product(matrix: Array, vectors: Array) -> Array:
-    """Matrix times vector for each row of (N, 3); the matrix is (3, 3), or one for each row, (N, 3, 3).
+def pin_joints(model: Model, pin_model: Any) -> list[LibraryJoint]:
+    """The moving joints, in our order."""
 
-    Written out, since a matrix product of the whole batch rounds by its size, and a state must give the same bits in
-    any batch.
-    """
-    x, y, z = (vectors[:, k, None] for k in range(3))
-    return matrix[..., :, 0] * x + matrix[..., :, 1] * y + matrix[..., :, 2] * z
+    def place(joint: Joint, link: Link) -> tuple[int, slice, slice]:
+        number = pin_model.getJointId(joint.name)
+        built = pin_model.joints[number]
+        return number, slice(built.idx_q, built.idx_q + built.nq), slice(built.idx_v, built.idx_v + built.nv)
+
+    return library_joints(model, place)
 
 
 def pin_links(model: Model, pin_model: Any) -> list[PinLink]:
@@ -98,97 +119,71 @@ def differences(model: Model, pin_model: Any) -> list[str]:
     expected = [joint.name for joint in model.joints if joint.nv]
     if built != expected:
         return [f"moving joints: {', '.join(built)}, the file has {', '.join(expected)}"]
-    found: list[str] = []
     data = pin_model.createData()
-    for i, joint in enumerate(model.joints):
-        found += _joint_differences(model, pin_model, data, joint, i)
-    found += _mimic_differences(model)
-    return found
+    lines = [line for i in range(len(model.joints)) for line in _joint_differences(model, pin_model, data, i)]
+    return [*lines, *_mimic_differences(model)]
 
 
-def _joint_differences(model: Model, pin_model: Any, data: Any, joint: Joint, i: int) -> Iterator[str]:
+def _joint_differences(model: Model, pin_model: Any, data: Any, i: int) -> Iterator[str]:
     """Placement, axis and limits of a joint; mass, centre and tensor of what it carries."""
+    joint, link, at_link = model.joints[i], model.links[i], (i, np.eye(3), np.zeros(3))
     R, p, ancestor = _placement_on_moving(model, i)
-    here, link = f"joint {joint.name!r}", f"link {model.links[i].name!r}"
     if not joint.nv:
-        at = pin_model.getFrameId(joint.name, pin.FrameType.FIXED_JOINT)
-        frame = pin_model.frames[at]
-        yield from differs(f"{here} placement R", R, frame.placement.rotation, 1.0)
-        yield from differs(f"{here} placement p", p, frame.placement.translation)
-        yield from _inertia_differences(link, _inertia(model, [(i, np.eye(3), np.zeros(3))]), frame.inertia)
+        frame = pin_model.frames[pin_model.getFrameId(joint.name, pin.FrameType.FIXED_JOINT)]
+        yield from placement_differences(joint, (R, p), frame.placement.rotation, frame.placement.translation)
+        yield from _inertia_differences(link, _inertia(model, [at_link]), frame.inertia)
         return
-    at = pin_model.getJointId(joint.name)
+    number = pin_model.getJointId(joint.name)
     parent = pin_model.getJointId(model.joints[ancestor].name) if ancestor >= 0 else 0
-    if pin_model.parents[at] != parent:
-        yield f"{here}: hangs on {pin_model.names[pin_model.parents[at]]!r}, not where the file has it"
-    placement = pin_model.jointPlacements[at]
-    yield from differs(f"{here} placement R", R, placement.rotation, 1.0)
-    yield from differs(f"{here} placement p", p, placement.translation)
-    yield from differs(f"{here} axis", _subspace(joint), data.joints[at].S, 1.0)
-    yield from _limit_differences(here, joint, pin_model, at)
-    merged = [(i, np.eye(3), np.zeros(3)), *((k, *_placement_on_moving(model, k)[:2]) for k in _merged(model, i))]
-    yield from _inertia_differences(link, _inertia(model, merged), pin_model.inertias[at])
+    if pin_model.parents[number] != parent:
+        hanging_on = pin_model.names[pin_model.parents[number]]
+        yield f"joint {joint.name!r}: hangs on {hanging_on!r}, not where the file has it"
+    placement, built = pin_model.jointPlacements[number], pin_model.joints[number]
+    yield from placement_differences(joint, (R, p), placement.rotation, placement.translation)
+    yield from differs(f"joint {joint.name!r} axis", _subspace(joint), data.joints[number].S, 1.0)
+    if joint.type.has_axis:
+        yield from limit_differences(joint, _limits(pin_model, built.idx_q, built.idx_v))
+    merged = [at_link, *((k, *_placement_on_moving(model, k)[:2]) for k in _merged(model, i))]
+    yield from _inertia_differences(link, _inertia(model, merged), pin_model.inertias[number])
+
+
+def _limits(pin_model: Any, q: int, v: int) -> dict[str, float]:
+    return {
+        "damping": pin_model.damping[v],
+        "friction": pin_model.upperDryFrictionLimit[v],
+        "velocity limit": pin_model.velocityLimit[v],
+        "effort limit": pin_model.effortLimit[v],
+        "lower limit": pin_model.lowerPositionLimit[q],
+        "upper limit": pin_model.upperPositionLimit[q],
+    }
+
+
+def _inertia_differences(link: Link, expected: tuple[float, Array, Array], built: Any) -> Iterator[str]:
+    mass, com, _ = expected
+    scale = mass * float(com @ com)  # what is merged was moved to the common centre of mass
+    yield from inertia_differences(link, expected, (built.mass, built.lever, built.inertia), scale)
 
 
 def _mimic_differences(model: Model) -> Iterator[str]:
     """Multiplier and offset of followers, where Pinocchio can build them: not if the followed joint sorts later."""
-    followers = [joint for joint in model.joints if joint.mimic is not None and not joint.mimic.rounded]
-    if not followers:
-        return
+    joints = followers(model)
     try:
-        pin_model = pin.buildModelFromXML(model.urdf, mimic=True)
+        pin_model: Any = pin.buildModelFromXML(model.urdf, mimic=True) if joints else None
     except (ValueError, RuntimeError):
         return
-    for joint in followers:
-        number = pin_model.getJointId(joint.name)
-        if number < pin_model.njoints and pin_model.joints[number].shortname() == "JointModelMimic" and joint.mimic:
+    for joint in joints:
+        number = pin_model.getJointId(joint.name)  # njoints for one that it did not build
+        if number < pin_model.njoints and pin_model.joints[number].shortname() == "JointModelMimic":
             built = pin_model.joints[number].extract()
-            yield from differs(f"joint {joint.name!r} mimic multiplier", joint.mimic.multiplier, built.scaling)
-            yield from differs(f"joint {joint.name!r} mimic offset", joint.mimic.offset, built.offset)
-
-
-def _inertia_differences(link: str, expected: tuple[float, Array, Array], built: Any) -> Iterator[str]:
-    mass, com, tensor = expected
-    yield from differs(f"{link} mass", mass, built.mass)
-    if mass:
-        yield from differs(f"{link} centre of mass", com, built.lever)
-    yield from differs(f"{link} inertia", tensor, built.inertia, mass * float(com @ com))
-
-
-def _limit_differences(here: str, joint: Joint, pin_model: Any, at: int) -> Iterator[str]:
-    """Limits, where the file sets them (a continuous joint has none on its angle), damping and friction."""
-    if not joint.type.has_axis:
-        return
-    limits, v, q = joint.limits, pin_model.joints[at].idx_v, pin_model.joints[at].idx_q
-    compared = [
-        ("velocity limit", limits.velocity, pin_model.velocityLimit[v]),
-        ("effort limit", limits.effort, pin_model.effortLimit[v]),
-    ]
-    yield from differs(f"{here} damping", joint.dynamics.damping, pin_model.damping[v])
-    yield from differs(f"{here} friction", joint.dynamics.friction, pin_model.upperDryFrictionLimit[v])
-    if joint.type.limits != "none":
-        compared += [
-            ("lower limit", limits.lower, pin_model.lowerPositionLimit[q]),
-            ("upper limit", limits.upper, pin_model.upperPositionLimit[q]),
-        ]
-    for what, expected, built in compared:
-        if np.isfinite(expected):
-            yield from differs(f"{here} {what}", expected, built)
+            yield from mimic_differences(joint, built.scaling, built.offset)
 
 
 def _subspace(joint: Joint) -> Array:
     """The joint's motion per unit rate, linear before angular: (6,), or (6, nv) where there are several rates."""
-    if joint.type.has_axis:
-        return np.concatenate([np.zeros(3), joint.axis] if joint.type.rotates else [joint.axis, np.zeros(3)])
-    return np.eye(6) if joint.type == FLOATING else _with_axis(joint.axis)
-
-
-def _with_axis(axis: Array) -> Array:
-    """The subspace of a planar joint: along x and y, about the axis."""
-    S = np.zeros((6, 3))
-    S[0, 0] = S[1, 1] = 1.0
-    S[3:, 2] = axis
-    return S
+    S = np.eye(6)[:, : joint.nv]  # of a floating joint all six, of a planar one x and y
+    if joint.type != FLOATING:
+        S[:, -1] = [0, 0, 0, *joint.axis] if joint.type.rotations[-1] else [*joint.axis, 0, 0, 0]
+    return S.squeeze()
 
 
 def _placement_on_moving(model: Model, i: int) -> tuple[Array, Array, int]:

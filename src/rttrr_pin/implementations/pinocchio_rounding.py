@@ -21,6 +21,8 @@ import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.scalars import EPS
+from rttrr_pin.implementations.allowance import add_inwards
+from rttrr_pin.implementations.library import norms
 from rttrr_pin.implementations.pinocchio_model import PinLink
 
 OPERATIONS = 4
@@ -45,23 +47,19 @@ def rounding(pin_model: Any, links: Sequence[PinLink], spatial: Array, reach: Ar
         turning[:, joint] += turning[:, parents[joint]]
         acceleration[:, joint] += acceleration[:, parents[joint]] + reach[:, joint] * turning[:, parents[joint]]
 
-    mass = np.array([abs(inertia.mass) for inertia in pin_model.inertias])  # a size, also where a file has it negative
-    c = np.array([np.linalg.norm(inertia.lever) for inertia in pin_model.inertias])
-    tensor = np.array([np.linalg.norm(inertia.inertia) for inertia in pin_model.inertias])
+    inertias = pin_model.inertias
+    mass = norms(inertia.mass for inertia in inertias)  # a size, also where a file has it negative
+    c, tensor = norms(inertia.lever for inertia in inertias), norms(inertia.inertia for inertia in inertias)
     force = mass * (acceleration + c * turning)
     moment = mass * (v**2 + c * acceleration + c**2 * turning) + tensor * turning
-    for joint in reversed(range(1, len(parents))):
-        force[:, parents[joint]] += force[:, joint]
-        moment[:, parents[joint]] += moment[:, joint] + reach[:, joint] * force[:, joint]
+    add_inwards([-1, *parents[1:]], force, moment, reach)
 
     at = [link.joint for link in links]
-    arm = np.array([np.linalg.norm(link.p) for link in links])
-    own_mass = np.array([abs(link.mass) for link in links])
-    own_arm = arm + np.array([np.linalg.norm(link.com) for link in links])
-    own_tensor = np.array([np.linalg.norm(link.inertia) for link in links])
+    arm = norms(link.p for link in links)
+    own_arm = arm + norms(link.com for link in links)
     out = {
-        "F": own_mass * (acceleration[:, at] + own_arm * turning[:, at]),
-        "N": own_tensor * turning[:, at],
+        "F": norms(link.mass for link in links) * (acceleration[:, at] + own_arm * turning[:, at]),
+        "N": norms(link.inertia for link in links) * turning[:, at],
         "f": force[:, at],
         "n": moment[:, at] + arm * force[:, at],
     }

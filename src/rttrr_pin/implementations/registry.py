@@ -159,16 +159,3 @@ def make_references(sources: Source | Sequence[Source], model: Model) -> list[Im
     if twice:
         raise InputError(f"reference {twice[0]!r} is named {wanted.count(twice[0])} times: once is enough")
     return [make_implementation(source, model) for source in wanted]
-
-
-def urdf_of(model: Model, program: str) -> str:
-    """The text that a program builds its own model from.
-
-    Raises:
-        ImplementationError: the model was made from numbers.
-    """
-    if not model.urdf:
-        raise ImplementationError(
-            f"robot {model.name!r} was made from numbers, and {program} builds from a URDF: load it from a file"
-        )
-    return model.urdf

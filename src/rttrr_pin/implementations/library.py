@@ -1,0 +1,211 @@
+"""What every dynamics library that builds its own model has in common.
+
+It reads the same URDF text, and what it built is compared with the file before it is asked: comparing results of two
+models would mislead. It lets every joint move by itself, so that joints that follow another are driven along here, and
+their forces are summed up by virtual work.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.dynamics import generalised_forces, joint_effects, mimicked
+from rttrr_pin.core.joint import Joint
+from rttrr_pin.core.joints.base import JointState
+from rttrr_pin.core.model import Link, Model
+from rttrr_pin.core.scalars import EPS, FLOAT
+from rttrr_pin.errors import ImplementationError
+from rttrr_pin.implementations.protocol import Batch
+
+TOLERANCE = 64 * EPS
+"""Relative; merging inertias over fixed joints and turning them by rpy rounds a few times."""
+
+
+@dataclass(frozen=True, slots=True)
+class LibraryJoint:
+    """A moving joint of ours, where a library has it.
+
+    Attributes:
+        joint: ours.
+        number: the library's number of it.
+        q: where its coordinates are in the library's q.
+        v: where its rates are in the library's v, a, tau.
+        own_q: where its coordinates are in our q; of a follower those of the joint it follows.
+        own_v: where its rates are in our v, a, tau; likewise.
+    """
+
+    joint: Joint
+    number: int
+    q: slice
+    v: slice
+    own_q: slice
+    own_v: slice
+
+    def own(self, batch: Batch) -> tuple[Array, Array, Array]:
+        """Its coordinates, rates and accelerations, (N, its nq) and (N, its nv): a follower's from its leader's."""
+        q, v, a = batch.q[:, self.own_q], batch.v[:, self.own_v], batch.a[:, self.own_v]
+        if self.joint.mimic is not None:
+            state: Any = mimicked(self.joint.mimic, JointState([q], [v], [a]), FLOAT)
+            (q,), (v,), (a,) = state.q, state.v, state.a
+        return q, v, a
+
+
+@dataclass(frozen=True, slots=True)
+class Motion:
+    """A batch in a library's coordinates: q (N, nq), v and a (N, nv), every joint moving by itself."""
+
+    q: Array
+    v: Array
+    a: Array
+
+    @classmethod
+    def of(cls, joints: Sequence[LibraryJoint], batch: Batch, nq: int, nv: int, convert: Convert) -> Motion:
+        """From our coordinates, each joint's by `convert`."""
+        motion = cls(*(np.empty((len(batch), width)) for width in (nq, nv, nv)))
+        for joint in joints:
+            q, v, a = convert(joint, *joint.own(batch))
+            motion.q[:, joint.q], motion.v[:, joint.v], motion.a[:, joint.v] = q, v, a
+        return motion
+
+
+Convert = Callable[[LibraryJoint, Array, Array, Array], tuple[Array, Array, Array]]
+"""From a joint's q, v, a in our convention to those in the library's."""
+
+
+def library_joints(model: Model, place: Callable[[Joint, Link], tuple[int, slice, slice]]) -> list[LibraryJoint]:
+    """The moving joints, in our order; `place` gives a library's number, q and v of the joint that carries a link."""
+    joints = zip(model.joints, model.links, own_slices(model), strict=True)
+    return [LibraryJoint(joint, *place(joint, link), *own) for joint, link, own in joints if joint.nv]
+
+
+def own_slices(model: Model) -> list[tuple[slice, slice]]:
+    """For each joint, where its coordinates and its rates are in ours; those of a follower are its leader's."""
+    slices: dict[int, tuple[slice, slice]] = {}
+    at_q = at_v = 0
+    for i in model.independent:
+        joint = model.joints[i]
+        slices[i] = slice(at_q, at_q + joint.nq), slice(at_v, at_v + joint.nv)
+        at_q, at_v = at_q + joint.nq, at_v + joint.nv
+    none = slice(0, 0), slice(0, 0)
+    return [slices.get(joint.mimic.joint if joint.mimic else i, none) for i, joint in enumerate(model.joints)]
+
+
+def joint_forces(joints: Sequence[LibraryJoint], batch: Batch, nv: int, armature: bool = True) -> Array:
+    """The forces that joints take themselves, (N, the library's nv); without armature where a library has it in tau."""
+    forces = np.zeros((len(batch), nv))
+    for joint in joints:
+        _, v, a = joint.own(batch)
+        effects = joint.joint.effects if armature else replace(joint.joint.effects, armature=0.0)
+        force: Any
+        (force,) = joint_effects(effects, JointState((), [v], [a]), FLOAT)
+        forces[:, joint.v] = force
+    return forces
+
+
+def reduce_forces(model: Model, joints: Sequence[LibraryJoint], forces: Array) -> Array:
+    """Forces of a library's joints, (N, its nv), as forces along the degrees of freedom of the robot, (N, nv)."""
+    columns = iter([*forces[:, joint.v].T] for joint in joints)
+    by_joint: list[Any] = [next(columns) if joint.nv else [] for joint in model.joints]
+    out = np.empty((len(forces), model.nv))
+    for k, force in enumerate(generalised_forces(model, FLOAT, by_joint)):
+        out[:, k] = np.asarray(force)
+    return out
+
+
+def product(matrix: Array, vectors: Array) -> Array:
+    """Matrix times vector for each row of (N, 3); the matrix is (3, 3), or one for each row, (N, 3, 3).
+
+    Written out, since a matrix product of the whole batch rounds by its size, and a state must give the same bits in
+    any batch.
+    """
+    x, y, z = (vectors[:, k, None] for k in range(3))
+    return matrix[..., :, 0] * x + matrix[..., :, 1] * y + matrix[..., :, 2] * z
+
+
+def norms(arrays: Iterable[ArrayLike]) -> Array:
+    """The Euclidean norm of each array."""
+    return np.array([np.linalg.norm(x) for x in arrays])
+
+
+def urdf_of(model: Model, program: str) -> str:
+    """The text that a program builds its own model from.
+
+    Raises:
+        ImplementationError: the model was made from numbers.
+    """
+    if not model.urdf:
+        raise ImplementationError(
+            f"robot {model.name!r} was made from numbers, and {program} builds from a URDF: load it from a file"
+        )
+    return model.urdf
+
+
+def differs(what: str, expected: ArrayLike, built: ArrayLike, scale: float = 0.0) -> Iterator[str]:
+    """A line, if two numbers or arrays are apart by more than rounding.
+
+    Args:
+        what: they are, in words.
+        expected: what the file says.
+        built: what the library has.
+        scale: of what was rounded on the way, where that is larger than the numbers themselves.
+    """
+    x, y = np.asarray(expected, dtype=float), np.asarray(built, dtype=float)
+    size = max(float(np.linalg.norm(x)), scale)
+    if x.shape != y.shape or not np.linalg.norm(x - y) <= TOLERANCE * size:
+        shown_y, shown_x = (np.array2string(z, precision=17, separator=", ").replace("\n", "") for z in (y, x))
+        yield f"{what}: {shown_y}, the file says {shown_x}"
+
+
+def placement_differences(joint: Joint, expected: tuple[Array, Array], R: Array, p: Array) -> Iterator[str]:
+    """What of a joint's placement R, p [m] is not as expected."""
+    yield from differs(f"joint {joint.name!r} placement R", expected[0], R, 1.0)
+    yield from differs(f"joint {joint.name!r} placement p", expected[1], p)
+
+
+def inertia_differences(
+    link: Link, expected: tuple[float, Array, Array], built: tuple[float, Array, Array], scale: float = 0.0
+) -> Iterator[str]:
+    """What of mass, centre of mass and tensor about it is not as expected; `scale` is that of the tensor."""
+    here = f"link {link.name!r}"
+    (mass, com, tensor), (built_mass, built_com, built_tensor) = expected, built
+    yield from differs(f"{here} mass", mass, built_mass)
+    if mass:
+        yield from differs(f"{here} centre of mass", com, built_com)
+    yield from differs(f"{here} inertia", tensor, built_tensor, scale)
+
+
+def limit_differences(joint: Joint, built: Mapping[str, float]) -> Iterator[str]:
+    """Damping, friction and limits, of those that a library has, where the file sets them.
+
+    A continuous joint has no limit on its angle.
+    """
+    limits = joint.limits
+    expected = {
+        "damping": joint.dynamics.damping,
+        "friction": joint.dynamics.friction,
+        "velocity limit": limits.velocity,
+        "effort limit": limits.effort,
+    }
+    if joint.type.limits != "none":
+        expected |= {"lower limit": limits.lower, "upper limit": limits.upper}
+    for what, number in expected.items():
+        if what in built and np.isfinite(number):
+            yield from differs(f"joint {joint.name!r} {what}", number, built[what])
+
+
+def followers(model: Model) -> list[Joint]:
+    """The joints whose multiplier and offset are numbers of the file, and not the product of a chain of mimics."""
+    return [joint for joint in model.joints if joint.mimic is not None and not joint.mimic.rounded]
+
+
+def mimic_differences(joint: Joint, multiplier: float, offset: float) -> Iterator[str]:
+    """What of a follower's multiplier and offset is not as in the file."""
+    assert joint.mimic is not None
+    yield from differs(f"joint {joint.name!r} mimic multiplier", joint.mimic.multiplier, multiplier)
+    yield from differs(f"joint {joint.name!r} mimic offset", joint.mimic.offset, offset)
