@@ -86,6 +86,12 @@ def default_allowance(batch: Batch) -> dict[str, Array]:
     return {"tau": _of_carriers(model, wide) + HANDOVER * own} | wide
 
 
+def of_printed(batch: Batch, halves: Mapping[str, Array]) -> dict[str, Array]:
+    """The default allowance, and half a unit in the last place of each number that was printed."""
+    default = default_allowance(batch)
+    return {key: default[key] + (half if key == "tau" else norm(half)) for key, half in halves.items()}
+
+
 def sizes(batch: Batch) -> dict[str, Array]:
     """F, N, f, n as the sum of the absolute values of all terms, linear velocities included, (N, links) each.
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 import numpy as np
@@ -11,7 +11,7 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.errors import ImplementationError, RttrrError, ShapeError
-from rttrr_pin.implementations.protocol import Batch, Evaluation
+from rttrr_pin.implementations.protocol import Batch, Evaluation, shape_of
 from rttrr_pin.implementations.text_results import quantities_of, trial_states
 
 TRIED = 3
@@ -44,16 +44,22 @@ class Function:
         self.function = function
         self.model = model
         self.quantities: tuple[str, ...] = ()
-        q, v, a = trial_states(model, TRIED)
-        together = self._tried(lambda: [self._checked(self._call(0, q, v, a), (TRIED,))])
-        alone = self._tried(lambda: [self._checked(self._call(k, q[k], v[k], a[k]), ()) for k in range(TRIED)])
-        if isinstance(alone, RttrrError) and isinstance(together, RttrrError):
+        trial = Batch(model, *trial_states(model, TRIED))
+        outcomes: list[Mapping[str, Array] | RttrrError] = []
+        for self.takes_batches in (False, True):
+            try:
+                outcomes.append(self.evaluate(trial).values)
+            except RttrrError as error:
+                outcomes.append(error)
+        alone, together = outcomes
+        if isinstance(together, RttrrError) and isinstance(alone, RttrrError):
             raise alone
         self.takes_batches = not isinstance(together, RttrrError) and (
-            isinstance(alone, RttrrError) or _same(together[0], alone)
+            isinstance(alone, RttrrError) or _same(together, alone)
         )
-        first = together if self.takes_batches else alone
-        self.quantities = tuple(key for key in QUANTITIES if key in first[0])  # type: ignore[index]
+        results = together if self.takes_batches else alone
+        assert not isinstance(results, RttrrError)
+        self.quantities = tuple(key for key in QUANTITIES if key in results)
 
     def evaluate(self, batch: Batch) -> Evaluation:
         """What the function returns, state by state or at once."""
@@ -63,9 +69,10 @@ class Function:
             )
         if self.takes_batches:
             return Evaluation(self._checked(self._call(batch.first, batch.q, batch.v, batch.a), (len(batch),)))
-        rows = zip(batch.q, batch.v, batch.a, strict=True)
-        results = [self._checked(self._call(batch.first + k, *row), ()) for k, row in enumerate(rows)]
-        return Evaluation({key: np.stack([result[key] for result in results]) for key in self.quantities})
+        results: list[dict[str, Array]] = []
+        for k, state in enumerate(zip(batch.q, batch.v, batch.a, strict=True)):
+            results.append(self._checked(self._call(batch.first + k, *state), (), results[0] if results else ()))
+        return Evaluation({key: np.stack([result[key] for result in results]) for key in results[0]})
 
     def _call(self, state: int, q: Array, v: Array, a: Array) -> Any:
         try:
@@ -73,50 +80,33 @@ class Function:
         except Exception as error:  # the user's own code runs here
             raise ImplementationError(f"{self.name} raised {type(error).__name__} at state {state}: {error}") from error
 
-    def _checked(self, result: Any, batch: tuple[int, ...]) -> dict[str, Array]:
-        """What was returned, as arrays of the right shapes."""
-        parts = quantities_of(result, self.name)
-        if self.quantities and set(parts) != set(self.quantities):
+    def _checked(self, result: Any, batch: tuple[int, ...], before: Iterable[str] = ()) -> dict[str, Array]:
+        """What was returned, as arrays of the right shapes; the quantities are those of the trial, or as before."""
+        parts, wanted = quantities_of(result, self.name), self.quantities or tuple(before)
+        if wanted and set(parts) != set(wanted):
             raise ImplementationError(
-                f"{self.name} returned {', '.join(parts)}, and {', '.join(self.quantities)} when it was tried: "
+                f"{self.name} returned {', '.join(parts)}, and {', '.join(wanted)} when it was tried: "
                 "return the same quantities for each state"
             )
-        return {key: self._array(key, parts[key], batch) for key in parts}
+        return {key: self._array(key, x, (*batch, *shape_of(self.model, key))) for key, x in parts.items()}
 
-    def _array(self, key: str, x: Any, batch: tuple[int, ...]) -> Array:
-        wanted = (*batch, self.model.nv) if key == "tau" else (*batch, len(self.model.links), 3)
+    def _array(self, key: str, x: Any, wanted: tuple[int, ...]) -> Array:
         try:
             array = np.asarray(x if x is not None else "None", dtype=np.float64)  # NumPy takes None for NaN
         except (TypeError, ValueError):
             raise ImplementationError(f"{self.name} returned {key} as {type(x).__name__}, expected numbers") from None
-        if (
-            array.shape != wanted
-            and array.size == np.prod(wanted, dtype=int)
-            and array.squeeze().shape == tuple(n for n in wanted if n != 1)
-        ):
-            array = array.reshape(wanted)
-        if array.shape != wanted:
+        if array.squeeze().shape != tuple(n for n in wanted if n != 1):  # axes of length 1 may be there or not
             raise ShapeError(
                 f"{self.name} returned {key} of shape {array.shape}, expected {wanted}",
                 name=key,
                 got=array.shape,
                 wanted=str(wanted),
             )
-        return array
-
-    @staticmethod
-    def _tried(trial: Callable[[], list[dict[str, Array]]]) -> list[dict[str, Array]] | RttrrError:
-        """What a trial yields, or why it fails."""
-        try:
-            return trial()
-        except RttrrError as error:
-            return error
+        return array.reshape(wanted)
 
 
-def _same(together: dict[str, Array], alone: list[dict[str, Array]]) -> bool:
-    """Whether three states at once give the three results."""
-    return set(together) == set(alone[0]) and all(
-        np.allclose(together[key][k], result[key], rtol=1e-6, atol=0.0, equal_nan=True)
-        for key in together
-        for k, result in enumerate(alone)
+def _same(together: Mapping[str, Array], alone: Mapping[str, Array]) -> bool:
+    """Whether states at once and one by one give the same results."""
+    return together.keys() == alone.keys() and all(
+        np.allclose(x, alone[key], rtol=1e-6, atol=0.0, equal_nan=True) for key, x in together.items()
     )

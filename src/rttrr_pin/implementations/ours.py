@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from importlib import metadata
 
 import numpy as np
 
+from rttrr_pin.core.batch import RESULTS
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.errors import NumberError
 from rttrr_pin.implementations.allowance import of_bounds
-from rttrr_pin.implementations.bounds import RESULTS, kernel_of
-from rttrr_pin.implementations.protocol import Batch, Evaluation
+from rttrr_pin.implementations.protocol import Batch, Evaluation, kernel_of, shape_of
 
 
 class Recursion:
@@ -43,26 +44,8 @@ class CompiledKernel:
 
     def evaluate(self, batch: Batch) -> Evaluation:
         """tau, F, N, f, n of the compiled program; what overflows is infinite or no number."""
-        result = {}
-        try:
-            result = self.kernel(batch.q, batch.v, batch.a, payload=list(batch.loads) or None)
-        except NumberError:  # found by its results, which stand in the arrays all the same
-            links, rows = len(self.model.links), len(batch)
-            shapes = {name: (rows, self.model.nv) if name.startswith("tau") else (rows, links, 3) for name in RESULTS}
-            result = {name: np.empty(shape) for name, shape in shapes.items()}
-            for k in range(rows):
-                self._one(batch, k, {name: x[k] for name, x in result.items()})
+        result = {name: np.full((len(batch), *shape_of(self.model, name)), np.nan) for name in RESULTS}
+        with suppress(NumberError):  # of a number that overflows; the results stand in the arrays all the same
+            self.kernel(batch.q, batch.v, batch.a, payload=list(batch.loads) or None, out=result)
         values = {name: result[name] for name in QUANTITIES}
         return Evaluation(values, of_bounds(batch.bounds), result["tau_joint"])
-
-    def _one(self, batch: Batch, k: int, out: dict[str, np.ndarray[tuple[int, ...], np.dtype[np.float64]]]) -> None:
-        """One state of a batch in which some overflow."""
-        loads = [load.block(slice(k, k + 1)) for load in batch.loads]
-        try:
-            result = self.kernel(batch.q[k : k + 1], batch.v[k : k + 1], batch.a[k : k + 1], payload=loads or None)
-        except NumberError:
-            for x in out.values():
-                x[...] = np.nan
-            return
-        for name, x in out.items():
-            x[...] = result[name][0]

@@ -20,16 +20,15 @@ from contextlib import suppress
 
 import numpy as np
 
-from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.batch import split_columns
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.errors import ImplementationError, shortened
-from rttrr_pin.implementations.allowance import default_allowance, norm
-from rttrr_pin.implementations.protocol import Batch, Evaluation
+from rttrr_pin.implementations.allowance import of_printed
+from rttrr_pin.implementations.protocol import Batch, Evaluation, shape_of
 from rttrr_pin.implementations.text_results import (
     Digits,
     blocks_of,
+    fewest,
     flattened,
     json_of,
     number,
@@ -87,9 +86,10 @@ class Program:
         texts = self._replies(trial)
         self.quantities = tuple(key for key in QUANTITIES if key in texts[0])
         self._digits = {key: Digits.of(text for reply in texts for text in reply[key]) for key in self.quantities}
-        rounded = [digits.significant for digits in self._digits.values() if not digits.full]
-        self.digits = min(rounded, default=None)
-        self.note = f"{self.name} is judged at {self.digits} digits, as it prints them" if rounded else ""
+        self.digits = fewest(self._digits.values())
+        self.note = (
+            f"{self.name} is judged at {self.digits} digits, as it prints them" if self.digits is not None else ""
+        )
 
     def evaluate(self, batch: Batch) -> Evaluation:
         """What the program replies, state by state.
@@ -98,20 +98,13 @@ class Program:
             ImplementationError: it dies, hangs, or replies with what is no result; with the end of its stderr.
         """
         replies = self._replies(batch)
-        texts = {key: [text for reply in replies for text in reply[key]] for key in self.quantities}
-        arrays = {key: np.array([number(text) for text in column]) for key, column in texts.items()}
-        values, halves = self._shaped(arrays, batch), self._shaped(self._half_units(texts, arrays), batch)
-        allowed = default_allowance(batch)
-        return Evaluation(
-            values, {key: allowed[key] + (half if key == "tau" else norm(half)) for key, half in halves.items()}
-        )
-
-    def _half_units(self, texts: dict[str, list[str]], arrays: dict[str, Array]) -> dict[str, Array]:
-        return {key: self._digits[key].with_all(Digits.of(texts[key])).half_units(x) for key, x in arrays.items()}
-
-    def _shaped(self, arrays: dict[str, Array], batch: Batch) -> dict[str, Array]:
-        numbers = np.concatenate([arrays[key].reshape(len(batch), -1) for key in self.quantities], axis=1)
-        return split_columns(self.model, numbers, self.quantities)
+        values, halves = {}, {}
+        for key in self.quantities:
+            texts = [text for reply in replies for text in reply[key]]
+            x = np.array([number(text) for text in texts]).reshape(len(batch), *shape_of(self.model, key))
+            values[key] = x
+            halves[key] = self._digits[key].with_all(Digits.of(texts)).half_units(x)
+        return Evaluation(values, of_printed(batch, halves))
 
     def _replies(self, batch: Batch) -> list[dict[str, list[str]]]:
         """For each state the texts of the numbers by quantity; the program is ended where one cannot be had."""
@@ -120,7 +113,7 @@ class Program:
             start = self.seconds * (START if self._child is None else 1)
             if self._child is None:
                 self._child = _Child(self.words)
-                weakref.finalize(self, self._child.leave)
+                weakref.finalize(self, self._child.end, PATIENCE)
             for line in self._child.ask([_request(batch, k) for k in range(len(batch))], self.seconds, start):
                 replies.append(self._results(line, f"{self.name}, state {batch.first + len(replies)}"))
         except BaseException as error:
@@ -169,8 +162,8 @@ class _Child:
         assert self._process.stdin is not None
         assert self._process.stderr is not None
         self._stdin, self._stderr = self._process.stdin, self._process.stderr
-        os.set_blocking(self._stdin.fileno(), False)
-        os.set_blocking(self._stderr.fileno(), False)
+        for pipe in (self._stdin, self._stderr):
+            os.set_blocking(pipe.fileno(), False)
         self._unsent, self._received, self._tail = b"", b"", b""
 
     def ask(self, requests: Sequence[bytes], seconds: float, start: float) -> Iterator[str]:
@@ -253,25 +246,17 @@ class _Child:
             return "closed its output"
         return f"was ended by signal {-code}" if code < 0 else f"ended with exit code {code}"
 
-    def leave(self) -> None:
-        """Close its input, and end it if it does not leave."""
+    def end(self, patience: float = 0.0) -> str:
+        """End its input and, if it does not leave, itself with all that it has started; the end of its stderr."""
         if self._output < 0:
-            return
+            return ""
         with suppress(OSError):
             self._stdin.close()
         with suppress(subprocess.TimeoutExpired):
-            self._process.wait(PATIENCE)
-        self.end()
-
-    def end(self) -> str:
-        """End it, with all that it has started; the end of its stderr."""
-        if self._output < 0:
-            return ""
+            self._process.wait(patience)
         with suppress(ProcessLookupError, PermissionError):
             os.killpg(self._process.pid, 9)
         self._process.wait()
-        with suppress(OSError):
-            self._stdin.close()
         if not self._stderr.closed:
             self._read_stderr()
             self._stderr.close()
@@ -285,12 +270,8 @@ def _request(batch: Batch, k: int) -> bytes:
     state: dict[str, object] = {key: getattr(batch, key)[k].tolist() for key in ("q", "v", "a")}
     if batch.loads:
         state["payload"] = [
-            {
-                "link": batch.model.link_names[load.link],
-                "f": (load.f if load.f.ndim == 1 else load.f[k]).tolist(),
-                "n": (load.n if load.n.ndim == 1 else load.n[k]).tolist(),
-                "axes": "base" if load.in_base else "link",
-            }
+            {"link": batch.model.link_names[load.link], "axes": "base" if load.in_base else "link"}
+            | {key: (x if x.ndim == 1 else x[k]).tolist() for key, x in (("f", load.f), ("n", load.n))}
             for load in batch.loads
         ]
     return json.dumps(state).encode() + b"\n"

@@ -3,18 +3,30 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Protocol, runtime_checkable
 
 import numpy as np
 
+from rttrr_pin.compile.kernel import Kernel
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.batch import RESULTS
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
-from rttrr_pin.core.wrench import LinkWrenches
+from rttrr_pin.core.wrench import LINK_QUANTITIES, LinkWrenches
+from rttrr_pin.errors import NumberError
 from rttrr_pin.exact.rounding import bounded_dynamics
-from rttrr_pin.implementations.bounds import compiled_bounds
+
+LARGEST = 16
+"""Links up to which a program with bounds compiles in two seconds or less; it is kept on disk from then on."""
+
+
+@lru_cache(maxsize=8)
+def kernel_of(model: Model, outputs: tuple[str, ...]) -> Kernel[dict[str, Array]]:
+    """The last few compiled programs."""
+    return Kernel(model, outputs)
 
 
 @dataclass(frozen=True)
@@ -50,9 +62,17 @@ class Batch:
 
     @cached_property
     def bounds(self) -> LinkWrenches:
-        """A running error bound for the formulas of the recursion, compiled or from `recursion`."""
-        compiled = compiled_bounds(self.model, self.q, self.v, self.a, self.loads) if self.compiled else None
-        return self.recursion[1] if compiled is None else compiled
+        """A running error bound for the formulas of the recursion, the same for a state alone and in a batch.
+
+        Compiled where that is wanted and cheap, else from `recursion`, as where a number overflows.
+        """
+        if self.compiled and len(self) and len(self.model.links) <= LARGEST:
+            kernel = kernel_of(self.model, tuple(f"{name}_bound" for name in RESULTS))
+            with suppress(NumberError):
+                bounds = kernel(self.q, self.v, self.a, payload=list(self.loads) or None)
+                parts = {name: bounds[f"{name}_bound"] for name in RESULTS}
+                return LinkWrenches.of(parts, self.model.link_names, self.model.v_names)
+        return self.recursion[1]
 
 
 @dataclass(frozen=True)
@@ -70,6 +90,11 @@ class Evaluation:
     values: Mapping[str, Array]
     allowance: Mapping[str, Array] | None = None
     tau_joint: Array | None = None
+
+
+def shape_of(model: Model, quantity: str) -> tuple[int, ...]:
+    """The shape of a quantity in one state: (nv,) for driving forces, (links, 3) for F, N, f, n."""
+    return (len(model.links), 3) if quantity in LINK_QUANTITIES else (model.nv,)
 
 
 @runtime_checkable

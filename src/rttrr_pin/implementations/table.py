@@ -13,15 +13,13 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.batch import split_columns
 from rttrr_pin.core.inputs import coordinates
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.errors import ImplementationError, InputError, RttrrError, UnknownNameError, shortened
-from rttrr_pin.implementations.allowance import default_allowance, norm
-from rttrr_pin.implementations.bounds import kernel_of
-from rttrr_pin.implementations.protocol import Batch, Evaluation
-from rttrr_pin.implementations.text_results import Digits, blocks_of, column_names, flattened, json_of, number
+from rttrr_pin.implementations.allowance import norm, of_printed
+from rttrr_pin.implementations.protocol import Batch, Evaluation, kernel_of, shape_of
+from rttrr_pin.implementations.text_results import Digits, blocks_of, column_names, fewest, flattened, json_of, number
 
 STATE = ("q", "v", "a")
 
@@ -63,11 +61,12 @@ class Table:
         self.quantities = tuple(key for key in QUANTITIES if key in names)
         parsed = {key: _numbers(columns, names[key], lines, self.name) for key in names}
         printed = [parsed[key][1] for key in self.quantities]
-        rounded = not all(digits.full for digits in printed)
-        self.digits = min(digits.significant for digits in printed) if rounded else None
+        self.digits = fewest(printed)
+        self.note = (
+            f"{self.name} is judged at {self.digits} digits, as it was printed" if self.digits is not None else ""
+        )
         self._halves = {key: digits.half_units(x) for key, (x, digits) in parsed.items()}
-        self._states_rounded = rounded and any(_alike(parsed[key][1], printed) for key in STATE)
-        self.note = f"{self.name} is judged at {self.digits} digits, as it was printed" if rounded else ""
+        self._states_rounded = self.digits is not None and any(_alike(parsed[key][1], printed) for key in STATE)
         self._values = {key: x for key, (x, _) in parsed.items()}
         if self._states_rounded:
             _normalise(model, self._values["q"], self._halves["q"])
@@ -91,19 +90,15 @@ class Table:
             raise ImplementationError(
                 f"{self.name} has results at its own states and no others: a search needs a function or a program"
             )
-        values = self._shaped(self._values, part)
-        allowed, halves = default_allowance(batch), self._shaped(self._halves, part)
-        shifts = self._of_rounded_states(batch, part) if self._states_rounded else {}
-        allowance = {
-            key: allowed[key] + (half if key == "tau" else norm(half)) + shifts.get(key, 0.0)
-            for key, half in halves.items()
-        }
+        values, halves = (
+            {key: x[key][part].reshape(len(batch), *shape_of(self.model, key)) for key in self.quantities}
+            for x in (self._values, self._halves)
+        )
+        allowance = of_printed(batch, halves)
+        if self._states_rounded:
+            shifts = self._of_rounded_states(batch, part)
+            allowance = {key: x + shifts[key] for key, x in allowance.items()}
         return Evaluation(values, allowance)
-
-    def _shaped(self, columns: Mapping[str, Array], part: slice) -> dict[str, Array]:
-        """Results by quantity, (N, nv) or (N, links, 3)."""
-        numbers = np.concatenate([columns[key][part] for key in self.quantities], axis=1)
-        return split_columns(self.model, numbers, self.quantities)
 
     def _of_rounded_states(self, batch: Batch, part: slice) -> dict[str, Array]:
         """What half a unit in the last place of each coordinate, rate and acceleration changes, all added up."""
@@ -120,8 +115,7 @@ class Table:
                     _normalise(self.model, moved, self._halves["q"][part])
                 there = kernel(**(state | {key: moved}), payload=loads)
                 for name, x in there.items():
-                    change = np.abs(x - here[name]) if name == "tau" else norm(x - here[name])
-                    total[name] += change
+                    total[name] += np.abs(x - here[name]) if name == "tau" else norm(x - here[name])
         return total
 
 
@@ -202,8 +196,7 @@ def _binary(values: np.ndarray[Any, Any], column: str, name: str) -> tuple[Array
 def _csv(path: Path, model: Model) -> tuple[Texts, list[int]]:
     """A header and rows, separated by commas, semicolons or tabs; NumPy writes `# ` before the header."""
     lines = _lines_of(path)
-    rows = ((number_, line) for number_, line in lines if line.strip())
-    first = next(rows, None)
+    first = next(lines, None)
     if first is None:
         raise InputError(f"{path.name} is empty: expected a header and a row for each state")
     separator = max(",;\t", key=first[1].count)
@@ -213,7 +206,7 @@ def _csv(path: Path, model: Model) -> tuple[Texts, list[int]]:
     if twice:
         raise InputError(f"{path.name} has the column {twice[0]!r} {header.count(twice[0])} times: name it once")
     cells, numbers = [], []
-    for line_number, line in rows:
+    for line_number, line in lines:
         row = _split(path.name, line_number, line, separator)
         if len(row) != len(header):
             raise InputError(f"{path.name}, line {line_number}: {len(row)} cells, and the header has {len(header)}")
@@ -236,8 +229,6 @@ def _json_lines(path: Path, model: Model) -> tuple[Texts, list[int]]:
     names, blocks, numbers = column_names(model), blocks_of(model), []
     columns: Texts = {}
     for line_number, line in _lines_of(path):
-        if not line.strip():
-            continue
         where = f"{path.name}, line {line_number}"
         try:
             entry = json_of(line)
@@ -278,9 +269,10 @@ def _parquet(path: Path, model: Model) -> tuple[Columns, list[int]]:
 
 
 def _lines_of(path: Path) -> Iterator[tuple[int, str]]:
+    """The lines that are not blank, with their numbers."""
     try:
         with path.open(encoding="utf-8-sig") as file:
-            yield from enumerate(file, start=1)
+            yield from ((number_, line) for number_, line in enumerate(file, start=1) if line.strip())
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:

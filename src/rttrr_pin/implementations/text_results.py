@@ -76,6 +76,11 @@ class Digits:
         return halves
 
 
+def fewest(digits: Iterable[Digits]) -> int | None:
+    """The significant digits that results are judged at; None where nothing of a float64 was cut off."""
+    return min((own.significant for own in digits if not own.full), default=None)
+
+
 def blocks_of(model: Model) -> dict[str, Blocks]:
     """By name of a state's or a result's array, what its numbers belong to."""
     rates = [(joint.name, joint.nv) for joint in model.moving]
