@@ -31,10 +31,6 @@ from rttrr_pin.errors import InputError, UnknownNameError
 Result = TypeVar("Result", bound=Array | dict[str, Array])
 """What a kernel returns: an array for a single output, a dict of them by name for several."""
 
-NO_NUMBERS: tuple[Array, ...] = ()
-
-empty = np.empty
-
 
 @dataclass(frozen=True)
 class Variant(Widths):
@@ -49,21 +45,6 @@ class Variant(Widths):
     inputs: tuple[Field, ...]
     outputs: tuple[Field, ...]
     executable: Executable
-
-
-@dataclass(frozen=True, slots=True)
-class LastPayload:
-    """The payload of the last call: a wrench never changes, so that what it means is looked up once.
-
-    Attributes:
-        payload: the wrench.
-        one: computes a state with it.
-        numbers: force and moment as `one` takes them.
-    """
-
-    payload: Wrench
-    one: One | None
-    numbers: tuple[Array, ...]
 
 
 class Kernel(Generic[Result]):
@@ -97,14 +78,11 @@ class Kernel(Generic[Result]):
         self._variants: dict[tuple[PayloadSlot, ...], Variant] = {}
         self._lock = threading.Lock()
         self._inputs = "".join(field.name for field in inputs_read(model, self.outputs))
-        self._reads = tuple(name in self._inputs for name in "qva")
         self._floats = bool(model.quaternions)
         self._widths = {"q": model.nq, "v": model.nv, "a": model.nv}
-        self._shapes = [field.shape for field in outputs_of(model, self.outputs)]
-        self._shape = self._shapes[0]
         self._without_payload: One | None = None  # once it is compiled; of quaternions Python looks at each
-        self._one: One | None = None  # the same where all of q, v, a are read and one array is written
-        self._last: LastPayload | None = None
+        self._one: One | None = None  # the same where one array is written
+        self._last: tuple[Wrench | None, One | None, tuple[Array, ...]] = (None, None, ())
 
     def __reduce__(self) -> tuple[object, ...]:
         outputs = self.outputs[0] if self._single else self.outputs
@@ -171,7 +149,7 @@ class Kernel(Generic[Result]):
         # A control loop calls this with one state. Each line here costs a twentieth of the dynamics.
         if threads is None:
             if payload is None and self._one is not None:
-                answer: Result | None = self._one(q, v, a, empty(self._shape) if out is None else out)
+                answer: Result | None = self._one(q, v, a, out)
             else:
                 answer = self._at_once(q, v, a, payload, out)
             if answer is not None:
@@ -180,26 +158,20 @@ class Kernel(Generic[Result]):
 
     def _at_once(self, q: Any, v: Any, a: Any, payload: Payloads, out: Any) -> Result | None:
         """One state or few by the compiled entry for them; None where it declines, or is not there or not yet."""
-        one, numbers, last = self._without_payload, NO_NUMBERS, self._last  # another thread may change them
-        if payload is not None:
-            if last is None or last.payload is not payload:
-                return None
-            one, numbers = last.one, last.numbers
-        if one is None or (v is not None) is not self._reads[1] or (a is not None) is not self._reads[2]:
+        # A wrench never changes, so that of the last one it is known what it means.
+        last, one, numbers = (None, self._without_payload, ()) if payload is None else self._last
+        if one is None or last is not payload:
             return None
-        states = (q, v, a) if self._reads[2] else (q, v) if self._reads[1] else (q,)
-        batch = q.shape[:-1] if out is None and type(q) is np.ndarray and q.ndim == 2 and len(q) <= emit.FEW else ()
         if self._single:
-            answer: Result | None = one(*states, *numbers, empty(batch + self._shape) if out is None else out)
+            answer: Result | None = one(q, v, a, *numbers, out)
             return answer
         if out is None:
-            targets = [empty(batch + shape) for shape in self._shapes]
-            done = one(*states, *numbers, *targets) is not None
-            return cast("Result", dict(zip(self.outputs, targets, strict=True))) if done else None
+            arrays = one(q, v, a, *numbers, *[None] * len(self.outputs))
+            return None if arrays is None else cast("Result", dict(zip(self.outputs, arrays, strict=True)))
         if type(out) is not dict or out.keys() != set(self.outputs):
             return None
-        done = one(*states, *numbers, *(out[name] for name in self.outputs)) is not None
-        return cast("Result", out) if done else None
+        arrays = one(q, v, a, *numbers, *(out[name] for name in self.outputs))
+        return None if arrays is None else cast("Result", out)
 
     def _general(
         self, q: Any, v: Any, a: Any, payload: Payloads, out: Result | None, wanted_threads: int | None
@@ -209,7 +181,7 @@ class Kernel(Generic[Result]):
         payloads = self._loads(payload)
         variant = self._variant(tuple(PayloadSlot(load.link, load.in_base) for load in payloads))
         if isinstance(payload, Wrench) and not self._floats:
-            self._last = LastPayload(payload, variant.executable.one, (payloads[0].f, payloads[0].n))
+            self._last = payload, variant.executable.one, (payloads[0].f, payloads[0].n)
         arrays = self._arrays(q, v, a)
         numbers = {
             f"payload {name} at link {load.link + 1}{f' ({k + 1})' if len(payloads) > 1 else ''}": x
@@ -256,7 +228,7 @@ class Kernel(Generic[Result]):
                     found = self._variants[slots] = self._compiled(slots)
                     if not slots and not self._floats:
                         self._without_payload = found.executable.one
-                        self._one = self._without_payload if self._single and all(self._reads) else None
+                        self._one = self._without_payload if self._single else None
         return found
 
     def _compiled(self, slots: tuple[PayloadSlot, ...]) -> Variant:

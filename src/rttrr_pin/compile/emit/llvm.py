@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.emit import Array, Task
-from rttrr_pin.compile.emit.fastcall import python_function
+from rttrr_pin.compile.emit.fastcall import link_numpy, python_function
 from rttrr_pin.compile.emit.llvm_body import body
 from rttrr_pin.compile.emit.llvm_calls import calls
 from rttrr_pin.compile.emit.llvm_vectors import Layout
@@ -124,6 +124,7 @@ class LlvmEmitter:
 
     def load(self, code: bytes, inputs: Sequence[Field], outputs: Sequence[Field]) -> LlvmExecutable:
         """Link object code into this process."""
+        link_numpy()
         engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), self._machine())
         engine.add_object_file(llvm.ObjectFileRef.from_data(code))
         engine.finalize_object()
@@ -137,7 +138,7 @@ class LlvmExecutable:
         self._engine = engine
         kind = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64)
         self._run = kind(engine.get_function_address("run"))
-        self.one = python_function(engine.get_function_address("one"), engine.get_function_address("set_context"))
+        self.one = python_function(engine.get_function_address("one"))
 
     def bind(self, inputs: Sequence[Array], outputs: Sequence[NDArray[np.float64]]) -> Task:
         """Describe the arrays once, for any number of calls from any thread."""

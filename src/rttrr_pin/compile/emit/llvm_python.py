@@ -1,10 +1,12 @@
 """Compiled code that CPython calls, for one state or few: arrays in, without a detour through ctypes.
 
-    PyObject *one(PyObject *self, PyObject *const *args, Py_ssize_t count)    the last output, or None: declined
-    void set_context(int64 place, PyObject *object)    what it must know, see `CONTEXT`
+    PyObject *one(PyObject *self, PyObject *const *args, Py_ssize_t count)
 
-Only functions of CPython's stable C API are called (`FUNCTIONS`): arrays are read through the buffer protocol, whose
-`Py_buffer` has a documented layout. `fastcall` makes a Python function of it.
+takes q, v, a, force and moment of each payload, then the outputs; None for what is not read, and for outputs that it
+is to allocate. It returns the output, a tuple of several, or None: declined.
+
+Only functions of the C APIs of CPython (the stable one) and NumPy are called (`FUNCTIONS`): arrays are read through the
+buffer protocol, whose `Py_buffer` has a documented layout. `fastcall` makes a Python function of it.
 """
 
 from __future__ import annotations
@@ -20,20 +22,22 @@ from rttrr_pin.compile.emit.llvm_block import Array, Block, compute
 from rttrr_pin.compile.emit.llvm_columns import I1, I32, I64, PTR, Writer, function, number, untyped
 from rttrr_pin.compile.program import Field
 
-CONTEXT = ("ndarray", "none")
-"""Python objects whose addresses are set after loading."""
-
 VOID = ir.VoidType()
 
-FUNCTIONS: dict[str, tuple[ir.Type, list[ir.Type]]] = {
-    "PyObject_Type": (PTR, [PTR]),
-    "PyObject_GetBuffer": (I32, [PTR, PTR, I32]),
-    "PyBuffer_Release": (VOID, [PTR]),
-    "PyErr_Clear": (VOID, []),
-    "Py_IncRef": (VOID, [PTR]),
-    "Py_DecRef": (VOID, [PTR]),
+FUNCTIONS: dict[str, ir.FunctionType] = {
+    "PyObject_Type": ir.FunctionType(PTR, [PTR]),
+    "PyObject_GetBuffer": ir.FunctionType(I32, [PTR, PTR, I32]),
+    "PyBuffer_Release": ir.FunctionType(VOID, [PTR]),
+    "PyErr_Clear": ir.FunctionType(VOID, []),
+    "PyTuple_Pack": ir.FunctionType(PTR, [I64], var_arg=True),
+    "Py_IncRef": ir.FunctionType(VOID, [PTR]),
+    "Py_DecRef": ir.FunctionType(VOID, [PTR]),
+    "PyArray_New": ir.FunctionType(PTR, [PTR, I32, PTR, I32, PTR, PTR, I32, I32, PTR]),
+    "PyArray_GetPtr": ir.FunctionType(PTR, [PTR, PTR]),
 }
-"""Functions of the stable C API that compiled code calls."""
+"""Functions that compiled code calls."""
+
+NPY_DOUBLE = 12
 
 VIEW = {"data": 0, "object": 8, "ndim": 36, "format": 40, "shape": 48, "strides": 56}
 """Offsets of a Py_buffer on machines of 64 bits."""
@@ -46,6 +50,8 @@ READ, WRITE = 0x1C, 0x3D
 FLOAT64 = int.from_bytes(b"d\0", "little")
 """The format of native, aligned float64: all else begins with another character, or with one more."""
 
+NULL = ir.Constant(PTR, None)
+
 
 @dataclass
 class _One:
@@ -55,52 +61,108 @@ class _One:
         w: writes it.
         block: the program.
         api: the functions of the C API.
-        decline: where it goes if it does not take what it was given.
+        none, ndarray: the objects None and numpy.ndarray.
+        decline: where it goes if it does not take what was passed.
     """
 
     w: Writer
     block: Block
     api: dict[str, ir.Function]
+    none: ir.Value
+    ndarray: ir.Value
     decline: ir.Block
 
-    def write(self, ndarray: ir.Value, none: ir.Value) -> None:
-        """Compute a state or a small batch and return the last output, or release all and return None."""
-        w, b = self.w, self.w.builder
-        fields = self.block.program.inputs + self.block.program.outputs
-        _, args, count = b.function.args
+    def write(self) -> None:
+        """Compute a state or a small batch and return the outputs, or release all and return None."""
+        w, b, program = self.w, self.w.builder, self.block.program
+        inputs, outputs = program.inputs, program.outputs
         answer = w.memory(PTR)
-        w.store(none, answer)
-        views = w.memory(I64, VIEW_SIZE // 8 * len(fields))
-        at = [w.offset(views, VIEW_SIZE * k) for k in range(len(fields))]
-        for view in at:  # to release what was never filled does nothing
-            w.store(ir.Constant(PTR, None), w.offset(view, VIEW["object"]))
-        w.require(b.icmp_signed("==", count, number(len(fields))), self.decline)
-        items = [w.load(PTR, w.offset(args, 8 * k)) for k in range(len(fields))]
+        w.store(self.none, answer)
+        views = self._zeroed(VIEW_SIZE * len(inputs + outputs))  # to release what was never filled does nothing
+        owned = self._zeroed(8 * (len(outputs) + 1))  # the outputs, and the tuple of them
+        items = self._items()
         batched, m = number(0), number(1)
         arrays = []
-        for k, (item, view, field) in enumerate(zip(items, at, fields, strict=True)):
-            output = k >= len(self.block.program.inputs)
-            self._fill(item, view, ndarray, WRITE if output else READ)
+        for k, field in enumerate(inputs):
+            view = w.offset(views, VIEW_SIZE * k)
+            self._fill(items[field.name], view, READ)
             if k == 0:
                 batched, m = self._batch(view, field)
-            arrays.append(self._array(view, field, batched, m, output))
+            arrays.append(self._array(view, field, batched, m, output=False))
+        for k, field in enumerate(outputs):
+            view, reference = w.offset(views, VIEW_SIZE * (len(inputs) + k)), w.offset(owned, 8 * k)
+            arrays.append(self._output(items[field.name], view, reference, field, (batched, m)))
         self._require_apart(arrays, m)
         finite = b.icmp_signed("==", compute(w, self.block, arrays, (number(0), m), self.decline), number(0))
         w.require(finite, self.decline)
-        w.store(items[-1], answer)
+        results = [w.load(PTR, w.offset(owned, 8 * k)) for k in range(len(outputs))]
+        if len(results) > 1:
+            results = [b.call(self.api["PyTuple_Pack"], [number(len(results)), *results])]
+            w.store(results[0], w.offset(owned, 8 * len(outputs)))
+        w.store(results[0], answer)
         b.branch(self.decline)
         b.position_at_end(self.decline)
-        for view in at:
-            b.call(self.api["PyBuffer_Release"], [view])
+        for k in range(len(inputs + outputs)):
+            b.call(self.api["PyBuffer_Release"], [w.offset(views, VIEW_SIZE * k)])
         b.call(self.api["Py_IncRef"], [w.load(PTR, answer)])
+        for k in range(len(outputs) + 1):
+            b.call(self.api["Py_DecRef"], [w.load(PTR, w.offset(owned, 8 * k))])
         b.ret(w.load(PTR, answer))
 
-    def _fill(self, item: ir.Value, view: ir.Value, ndarray: ir.Value, flags: int) -> None:
+    def _items(self) -> dict[str, ir.Value]:
+        """The arguments by name; of q, v, a those that are not read must be None."""
+        w, b, program = self.w, self.w.builder, self.block.program
+        read = [field.name for field in program.inputs + program.outputs]
+        names = ["q", "v", "a", *(name for name in read if name not in ("q", "v", "a"))]
+        _, args, count = b.function.args
+        w.require(b.icmp_signed("==", count, number(len(names))), self.decline)
+        items = {name: w.load(PTR, w.offset(args, 8 * k)) for k, name in enumerate(names)}
+        for name in sorted(items.keys() - set(read)):
+            w.require(b.icmp_unsigned("==", items[name], self.none), self.decline)
+        return items
+
+    def _zeroed(self, size: int) -> ir.Value:
+        """Memory of so many bytes, all 0."""
+        memory = self.w.memory(I64, size // 8)
+        for k in range(size // 8):
+            self.w.store(number(0), self.w.offset(memory, 8 * k))
+        return memory
+
+    def _output(
+        self, item: ir.Value, view: ir.Value, reference: ir.Value, field: Field, batch: tuple[ir.Value, ir.Value]
+    ) -> Array:
+        """The array to write: the one passed, or a new one for None; a reference to it is kept."""
+        w, b, (batched, m) = self.w, self.w.builder, batch
+        data = w.memory(PTR)
+        with b.if_else(b.icmp_unsigned("==", item, self.none)) as (absent, passed):
+            with absent:
+                sizes = w.memory(I64, 1 + len(field.shape))
+                for k, size in enumerate((m, *map(number, field.shape))):
+                    w.store(size, w.offset(sizes, 8 * k))
+                sizes = w.offset(sizes, b.mul(b.sub(number(1), batched), number(8)))
+                axes = b.add(b.trunc(batched, I32), ir.Constant(I32, len(field.shape)))
+                zero = ir.Constant(I32, 0)
+                double = ir.Constant(I32, NPY_DOUBLE)
+                new = b.call(self.api["PyArray_New"], [self.ndarray, axes, sizes, double, NULL, NULL, zero, zero, NULL])
+                w.store(new, reference)
+                with b.if_then(b.icmp_unsigned("==", new, NULL), likely=False):
+                    b.call(self.api["PyErr_Clear"], [])
+                    b.branch(self.decline)
+                first = self._zeroed(8 * (1 + len(field.shape)))
+                w.store(b.call(self.api["PyArray_GetPtr"], [new, first]), data)
+            with passed:
+                b.call(self.api["Py_IncRef"], [item])
+                w.store(item, reference)
+                self._fill(item, view, WRITE)
+                w.store(self._array(view, field, batched, m, output=True).base, data)
+        return Array(w.load(PTR, data), number(8 * field.width), number(8))
+
+    def _fill(self, item: ir.Value, view: ir.Value, flags: int) -> None:
         """The buffer of an array of float64; of a subclass, masked arrays among them, Python code decides."""
         w, b = self.w, self.w.builder
         kind = b.call(self.api["PyObject_Type"], [item])
         b.call(self.api["Py_DecRef"], [kind])
-        w.require(b.icmp_unsigned("==", kind, ndarray), self.decline)
+        w.require(b.icmp_unsigned("==", kind, self.ndarray), self.decline)
         filled = b.call(self.api["PyObject_GetBuffer"], [item, view, ir.Constant(I32, flags)])
         with b.if_then(b.icmp_signed("!=", filled, ir.Constant(I32, 0)), likely=False):
             b.call(self.api["PyErr_Clear"], [])
@@ -162,15 +224,8 @@ class _One:
 
 
 def python_entry(module: ir.Module, block: Block) -> None:
-    """The functions `set_context` and `one` of a program whose blocks are computed so."""
-    context = ir.GlobalVariable(module, ir.ArrayType(PTR, len(CONTEXT)), "context")
-    context.initializer = ir.Constant(context.value_type, None)
-    untyped(context)
-    _, w = function(module, "set_context", VOID, [I64, PTR], internal=False)
-    place, item = w.builder.function.args
-    w.store(item, w.offset(context, w.builder.mul(place, number(8))))
-    w.builder.ret_void()
-    api = {name: ir.Function(module, ir.FunctionType(*kind), name) for name, kind in FUNCTIONS.items()}
-    made, w = function(module, "one", PTR, [PTR, PTR, I64], internal=False)
-    objects = [w.load(PTR, w.offset(context, 8 * k)) for k in range(len(CONTEXT))]
-    _One(w, block, api, made.append_basic_block("finish")).write(*objects)
+    """The function `one` of a program whose blocks are computed so."""
+    api = {name: ir.Function(module, kind, name) for name, kind in FUNCTIONS.items()}
+    none, ndarray = (untyped(ir.GlobalVariable(module, I64, name)) for name in ("_Py_NoneStruct", "PyArray_Type"))
+    one, w = function(module, "one", PTR, [PTR, PTR, I64], internal=False)
+    _One(w, block, api, none, ndarray, one.append_basic_block("finish")).write()
