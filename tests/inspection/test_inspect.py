@@ -26,7 +26,7 @@ from rttrr_pin.errors import InputError, UnknownNameError, UrdfError
 from rttrr_pin.inspection import CHECKS, PARSERS, RULES, Inspection, Severity, inspect, repair
 from rttrr_pin.inspection.shapes import find_mesh, looks_of
 from rttrr_pin.reporting.files import as_json
-from rttrr_pin.urdf.document import read_document
+from rttrr_pin.urdf.parser import read_document
 from support.inspected import arm, diagonal, inertial, joint, mirrored, shape, tip
 from support.tolerances import URDF_DIGITS
 

@@ -26,7 +26,8 @@ import rttrr_pin
 from rttrr_pin.errors import RttrrError
 from rttrr_pin.inspection import PARSERS, RULES, Behaviour, Inspection, inspect
 from rttrr_pin.inspection.merged_links import merged_links
-from rttrr_pin.urdf.document import UrdfDocument, read_document
+from rttrr_pin.urdf.document import UrdfDocument
+from rttrr_pin.urdf.parser import read_document
 from support.inspected import LIMIT, arm, diagonal, inertial, joint, shape, tip
 from support.tolerances import CONSUMER, CONSUMER_AXES, SOFT
 

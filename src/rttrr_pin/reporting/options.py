@@ -55,7 +55,7 @@ outcome = group(target("--json", "the outcome as JSON"), quiet)
 
 def numbers_of(option: str, text: str, count: int) -> list[float]:
     """Numbers separated by commas or blanks."""
-    from rttrr_pin.urdf.checks import NUMBER
+    from rttrr_pin.urdf.decimals import NUMBER
 
     words = text.replace(",", " ").split()
     numbers = [float(word) for word in words] if all(NUMBER.fullmatch(word) for word in words) else []

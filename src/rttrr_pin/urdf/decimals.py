@@ -1,11 +1,15 @@
-"""NumberList as a file writes them: the text, the exact rational behind it, and how far rounding can have moved it."""
+"""Numbers as a file writes them: the text, the exact rational behind it, and how far rounding can have moved it."""
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
+
+NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
+"""A decimal number as XML Schema writes it, in ASCII; no unit, comma, hexadecimal digits, `nan` or `inf`."""
 
 FINEST = -400
 """Power of ten below which a zero is just zero: 0e-999999999 is a valid text, and 10**999999999 fits nowhere."""

@@ -10,18 +10,15 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joints import JOINT_TYPES
 from rttrr_pin.core.solids import rotation
-from rttrr_pin.urdf.checks import check_document
 from rttrr_pin.urdf.decimals import Number, NumberList
-from rttrr_pin.urdf.sources import AnySource, Source, find
 from rttrr_pin.urdf.vocabulary import ATTRIBUTES
-from rttrr_pin.urdf.xml_text import parse_xml
 
 T = TypeVar("T")
 
@@ -231,92 +228,3 @@ class UrdfDocument:
                 R, p = placed[joint.parent]
                 placed[name] = R @ joint.origin.R, p + R @ joint.origin.p
         return placed
-
-
-def read_document(source: AnySource) -> UrdfDocument:
-    """Read and check a robot's file.
-
-    Args:
-        source: a name, a path, a text, ...: see `sources.py`.
-
-    Raises:
-        UnknownNameError: there is no such robot or file.
-        InputError: the source is of another type, or an extra is missing.
-        UrdfError: the file is no URDF, is damaged, or says something that has no dynamics.
-    """
-    file = find(source)
-    root = parse_xml(file)
-    check_document(root, file.name)
-    return _document(root, file)
-
-
-def _document(root: Any, file: Source) -> UrdfDocument:
-    return UrdfDocument(
-        source=file.name,
-        text=file.text.decode("utf-8-sig"),
-        folder=file.folder,
-        name=root.get("name"),
-        links={xml.get("name"): _link(xml) for xml in root.findall("link")},
-        joints={xml.get("name"): _joint(xml) for xml in root.findall("joint")},
-    )
-
-
-def _link(xml: Any) -> UrdfLink:
-    inertial = xml.find("inertial")
-    shapes = [_shape(shape) for role in ("visual", "collision") for shape in xml.findall(role)]
-    return UrdfLink(
-        name=xml.get("name"),
-        line=xml.sourceline,
-        inertial=None if inertial is None else _inertial(inertial),
-        shapes=tuple(shape for shape in shapes if shape is not None),
-    )
-
-
-def _inertial(xml: Any) -> UrdfInertial:
-    mass, tensor = xml.find("mass"), xml.find("inertia")
-    entries = {name: Number(tensor.get(name)) for name in ATTRIBUTES["inertia"]}
-    return UrdfInertial(_placement(xml), Number(mass.get("value")), entries)
-
-
-def _shape(xml: Any) -> UrdfShape | None:
-    """A shape; None where its element is empty or its placement is no placement, which dynamics do not depend on."""
-    shape = next((tag for tag in xml.findall("geometry/*") if isinstance(tag.tag, str)), None)
-    origin = _placement(xml)
-    try:
-        placed = len(origin.xyz.floats) == len(origin.rpy.floats) == 3
-    except ValueError:
-        placed = False
-    return None if shape is None or not placed else UrdfShape(xml.tag, shape.tag, dict(shape.attrib), origin)
-
-
-def _joint(xml: Any) -> UrdfJoint:
-    axis, limit, mimic, dynamics = (xml.find(tag) for tag in ("axis", "limit", "mimic", "dynamics"))
-    return UrdfJoint(
-        name=xml.get("name"),
-        line=xml.sourceline,
-        type=xml.get("type"),
-        parent=xml.find("parent").get("link"),
-        child=xml.find("child").get("link"),
-        origin=_placement(xml),
-        axis=NumberList(_word(axis, "xyz", "1 0 0")),
-        limit=None
-        if limit is None
-        else {key: Number(limit.get(key)) for key in ATTRIBUTES["limit"] if key in limit.attrib},
-        mimic=None if mimic is None else _mimic(mimic),
-        damping=Number(_word(dynamics, "damping", "0")),
-        friction=Number(_word(dynamics, "friction", "0")),
-    )
-
-
-def _mimic(xml: Any) -> UrdfMimic:
-    return UrdfMimic(_word(xml, "joint", ""), Number(_word(xml, "multiplier", "1")), Number(_word(xml, "offset", "0")))
-
-
-def _placement(xml: Any) -> Placement:
-    origin = xml.find("origin")
-    return Placement(NumberList(_word(origin, "xyz", "0 0 0")), NumberList(_word(origin, "rpy", "0 0 0")))
-
-
-def _word(xml: Any, attribute: str, default: str) -> str:
-    """An attribute of an element, either of which may be missing."""
-    return default if xml is None else str(xml.get(attribute, default))

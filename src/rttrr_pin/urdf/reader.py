@@ -12,7 +12,8 @@ from rttrr_pin.core.joint import Joint, JointEffects, Limits, Mimic
 from rttrr_pin.core.joints import JOINT_TYPES, JointType
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.errors import InputError, UrdfError, shortened
-from rttrr_pin.urdf.document import UrdfDocument, UrdfJoint, UrdfLink, read_document
+from rttrr_pin.urdf.document import UrdfDocument, UrdfJoint, UrdfLink
+from rttrr_pin.urdf.parser import read_document
 from rttrr_pin.urdf.sources import AnySource
 
 

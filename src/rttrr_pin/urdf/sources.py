@@ -6,7 +6,7 @@
 | `rttrr` | a bundled robot; it wins over a file of that name (`./rttrr` is the file) |
 | `example:panda` | a file of the package `example-robot-data`, by the names of `examples()` |
 | a path to a folder | the one `.urdf` or `.xacro` file in it or below |
-| a path that ends in `.xacro` | what the package `xacro` makes of it; messages then give the lines of its output |
+| a path that ends in `.xacro` | what ROS's package `xacro` makes of it; messages then give the lines of its output |
 | any other path | a URDF file |
 | a `yourdfpy.URDF` | see `yourdfpy_object.py` |
 """
@@ -151,9 +151,7 @@ def _find_path(path: Path) -> Source:
         raise UnknownNameError("bundled robot or file", shortened(str(path)), bundled(), fix)
     file = _file(str(path), path)
     if path.suffix == ".xacro":
-        from rttrr_pin.urdf.xacro import expanded
-
-        return Source(f"{path} (as xacro expands it)", expanded(path), file.folder)
+        return Source(f"{path} (as xacro expands it)", _expanded(path), file.folder)
     return file
 
 
@@ -185,6 +183,35 @@ def _example(name: str) -> Path:
 def _folder(parts: tuple[str, ...]) -> str:
     """The robot's folder in `.../robots/panda_description/urdf/panda.urdf`, without `_description`."""
     return parts[parts.index("robots") + 1].removesuffix("_description")
+
+
+def _expanded(path: Path) -> bytes:
+    """The URDF that a xacro file stands for, line by line what the command `xacro FILE` prints.
+
+    A xacro file is a program: its expressions are evaluated as Python, and may read other files and the environment.
+    """
+    try:
+        import xacro
+    except ImportError:
+        raise UrdfError(
+            "is a xacro file, which needs the package xacro: pip install 'rttrr-pin[xacro]'", source=str(path)
+        ) from None
+    try:
+        text: str = xacro.process_file(str(path)).toprettyxml(indent="  ")
+        return text.encode()
+    except RecursionError:
+        raise UrdfError("xacro cannot expand it: a macro calls itself without end", source=str(path)) from None
+    except Exception as error:  # the file's own expressions run here, and may raise anything
+        reason = " ".join(str(error).split()) or repr(error)
+        raise UrdfError(f"xacro cannot expand it: {reason}{_xacro_fix(reason)}", source=str(path)) from error
+
+
+def _xacro_fix(reason: str) -> str:
+    if "ament_index_python" in reason:
+        return ": $(find ...) asks ROS; source its setup first, or run xacro there and pass the URDF"
+    if "Undefined substitution argument" in reason:
+        return ": run `xacro FILE NAME:=VALUE` yourself and pass the URDF, or give the argument a default"
+    return ""
 
 
 def _is_yourdfpy(source: object) -> TypeGuard[Any]:
