@@ -15,14 +15,13 @@ from rttrr_pin.inspection import Inspection, inspect
 from rttrr_pin.inspection.exact import (
     Matrix,
     Shape,
-    pseudo_inertia,
     rank_if_positive,
     second_moments,
     shape_of,
-    symmetric,
     within_rounding,
 )
 from rttrr_pin.urdf.decimals import Number, text_of
+from rttrr_pin.urdf.document import symmetric
 from support.inspected import ENTRIES, arm, diagonal, inertial
 from support.serial_chains import EXAMPLES
 from support.tolerances import MODEL
@@ -52,6 +51,13 @@ def of_points(cloud: list[tuple[int, int, int]]) -> tuple[Fraction, Matrix]:
     sigma = [[sum((p[i] - com[i]) * (p[j] - com[j]) for p in cloud) for j in range(3)] for i in range(3)]
     trace = sigma[0][0] + sigma[1][1] + sigma[2][2]
     return n, tuple(tuple(trace * (i == j) - sigma[i][j] for j in range(3)) for i in range(3))
+
+
+def pseudo_inertia(mass: Fraction, com: list[Fraction], inertia: Matrix) -> Matrix:
+    """[[Sigma + m c c^T, m c], [m c^T, m]], 4x4, of a body with inertia I about its centre of mass c."""
+    sigma = second_moments(inertia)
+    rows = [(*(sigma[i][j] + mass * com[i] * com[j] for j in range(3)), mass * com[i]) for i in range(3)]
+    return (*rows, (*(mass * c for c in com), mass))
 
 
 @given(st.lists(points, min_size=1, max_size=6))

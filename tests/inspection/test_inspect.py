@@ -189,7 +189,7 @@ def test_the_bundled_arms_are_healthy(name: str, repository: Path) -> None:
     ],
 )
 def test_the_other_side_of_a_name(name: str, others: list[str]) -> None:
-    from rttrr_pin.inspection.mirrored_links import other_side
+    from rttrr_pin.inspection.structure import other_side
 
     assert list(other_side(name)) == others
     for other in others:

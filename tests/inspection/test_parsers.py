@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike
 import rttrr_pin
 from rttrr_pin.errors import RttrrError
 from rttrr_pin.inspection import PARSERS, RULES, Behaviour, Inspection, inspect
-from rttrr_pin.inspection.merged_links import merged_links
+from rttrr_pin.inspection.parser_rules import merged_links
 from rttrr_pin.urdf.document import UrdfDocument
 from rttrr_pin.urdf.parser import read_document
 from support.inspected import LIMIT, arm, diagonal, inertial, joint, shape, tip

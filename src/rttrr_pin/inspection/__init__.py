@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from rttrr_pin.inspection.fix import Repaired, repair
-from rttrr_pin.inspection.parsers import PARSERS, RULES
-from rttrr_pin.inspection.results import Behaviour, Finding, LinkRow, RuleMatch, Severity, Verdict
-from rttrr_pin.inspection.run import Inspection, inspect
-from rttrr_pin.inspection.table import CHECKS
+from rttrr_pin.inspection.bodies import LinkRow
+from rttrr_pin.inspection.checks import Finding, Severity
+from rttrr_pin.inspection.parsers import PARSERS, RULES, Behaviour, RuleMatch, Verdict
+from rttrr_pin.inspection.run import CHECKS, Inspection, Repaired, inspect, repair
 
 __all__ = [
     "CHECKS",

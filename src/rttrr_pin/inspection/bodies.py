@@ -3,16 +3,48 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.inspection.exact import Shape, shape
-from rttrr_pin.inspection.results import LinkRow
 from rttrr_pin.urdf.document import UrdfDocument
 
 ROUNDING = 1e-14
 """Of the largest: what is smaller is what diagonalising leaves of a zero. For show; verdicts are decided exactly."""
+
+
+@dataclass(frozen=True, eq=False)
+class LinkRow:
+    """A link of the tree and the body that it is.
+
+    Attributes:
+        name: its name.
+        depth: joints between it and the root.
+        joint: the joint that carries it; empty for the root.
+        joint_type: URDF's word for it.
+        mass: [kg]; 0 for a link without <inertial>.
+        com: centre of mass in the link frame, (3,) [m].
+        shape: what body has such an inertia, decided exactly.
+        moments: principal moments of inertia, ascending, (3,) [kg m^2].
+        axes: the principal axes as columns, in the link frame, right-handed, (3, 3).
+        semi_axes: of the homogeneous ellipsoid with this mass and inertia, along `axes`, (3,) [m]; NaN where no body
+            has them.
+        gyration: radii of gyration sqrt(moment / mass), (3,) [m]; NaN where there is no mass.
+    """
+
+    name: str
+    depth: int
+    joint: str
+    joint_type: str
+    mass: float
+    com: Array
+    shape: Shape
+    moments: Array
+    axes: Array
+    semi_axes: Array
+    gyration: Array
 
 
 def centre_of_mass(document: UrdfDocument, rows: tuple[LinkRow, ...], mass: float) -> Array:

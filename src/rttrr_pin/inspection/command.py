@@ -7,13 +7,13 @@ from pathlib import Path
 import click
 from rich.text import Text
 
-from rttrr_pin.inspection import run as inspection
-from rttrr_pin.inspection.fix import repair
 from rttrr_pin.inspection.report import repair_data, repair_summary
-from rttrr_pin.loading import load
+from rttrr_pin.inspection.run import inspect_document, repair
 from rttrr_pin.reporting.files import write_whole
 from rttrr_pin.reporting.options import check_targets, flag, outcome, robot
 from rttrr_pin.reporting.output import AGREE, DISAGREE, Output, write_json
+from rttrr_pin.urdf.parser import read_document
+from rttrr_pin.urdf.reader import model_of
 
 
 @click.command
@@ -46,7 +46,9 @@ def inspect(
     """
     check_targets({"--json": json}, [robot])
     check_targets({"--json": json, "--fix": fix})
-    result = inspection.inspect(load(robot), select=select, ignore=ignore)
+    document = read_document(robot)
+    model_of(document)  # as `load` does: it refuses numbers that overflow
+    result = inspect_document(document, select=select, ignore=ignore)
     repaired = None if fix is None else repair(result)
     if fix is not None and repaired is not None:
         write_whole(fix, repaired.text)

@@ -13,7 +13,7 @@ this, so the file's own axes do, and no sine is ever rounded.
 from __future__ import annotations
 
 import enum
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from fractions import Fraction
 from functools import lru_cache
 from itertools import combinations
@@ -21,7 +21,7 @@ from itertools import combinations
 import numpy as np
 
 from rttrr_pin.urdf.decimals import Number
-from rttrr_pin.urdf.document import UrdfInertial
+from rttrr_pin.urdf.document import ENTRIES, UrdfInertial, symmetric
 
 Matrix = tuple[tuple[Fraction, ...], ...]
 
@@ -50,23 +50,10 @@ class Shape(enum.StrEnum):
     IMPOSSIBLE = "impossible"
 
 
-def symmetric(entries: dict[str, Fraction]) -> Matrix:
-    """The 3x3 tensor of URDF's six entries."""
-    xx, xy, xz, yy, yz, zz = (entries[name] for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
-    return ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
-
-
 def second_moments(inertia: Matrix) -> Matrix:
     """Sigma = trace(I)/2 1 - I."""
     half = (inertia[0][0] + inertia[1][1] + inertia[2][2]) / 2
     return tuple(tuple(half * (i == j) - inertia[i][j] for j in range(3)) for i in range(3))
-
-
-def pseudo_inertia(mass: Fraction, com: Sequence[Fraction], inertia: Matrix) -> Matrix:
-    """[[Sigma + m c c^T, m c], [m c^T, m]], 4x4, of a body with inertia I about its centre of mass c."""
-    sigma = second_moments(inertia)
-    rows = [(*(sigma[i][j] + mass * com[i] * com[j] for j in range(3)), mass * com[i]) for i in range(3)]
-    return (*rows, (*(mass * c for c in com), mass))
 
 
 def determinant(matrix: Matrix) -> Fraction:
@@ -178,14 +165,11 @@ def _searched(written: dict[str, Fraction], may: dict[str, Fraction]) -> Iterato
         return
     shares = np.zeros(len(size))
     for k in range(SEARCHES):
-        entries = dict(zip(written, shares * size, strict=True))
-        xx, xy, xz, yy, yz, zz = (entries[name] for name in ("ixx", "ixy", "ixz", "iyy", "iyz", "izz"))
-        tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+        tensor = np.array(symmetric(dict(zip(written, shares * size, strict=True))))
         values, vectors = np.linalg.eigh(start + np.trace(tensor) / 2.0 * np.eye(3) - tensor)
         weights = np.exp((values[0] - values) / SOFTNESS)
         outer = (vectors * (weights / weights.sum())) @ vectors.T
         raised = 0.5 * np.eye(3) - outer  # what a unit of each moment adds; a product stands twice in the tensor
-        at = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
-        shares += (np.sign([raised[at[name]] for name in written]) - shares) * (2.0 / (k + 2.0))
+        shares += (np.sign([raised[ENTRIES[name]] for name in written]) - shares) * (2.0 / (k + 2.0))
         if k in REPORTED:
             yield {name: Fraction(float(share)) for name, share in zip(written, shares, strict=True)}

@@ -29,7 +29,7 @@ def filled_hull(points: Array) -> RigidBody | None:
         return None
     size = float(np.abs(away).max())
     corners = away / size
-    a, b, c = np.moveaxis(corners[_qhull_faces(corners) if len(points) > MANY else _faces(corners)], 1, 0)
+    a, b, c = np.moveaxis(corners[_faces(corners)], 1, 0)
     volumes = np.abs(np.einsum("ij,ij->i", a, np.cross(b, c))) / 6.0  # of tetrahedra on the centre, which is inside
     volume = volumes.sum()
     total = a + b + c
@@ -41,7 +41,11 @@ def filled_hull(points: Array) -> RigidBody | None:
 
 
 def _faces(points: Array) -> Array:
-    """Triangles of the hull, (F, 3) indices, each counterclockwise as seen from outside."""
+    """Triangles of the hull, (F, 3) indices."""
+    if len(points) > MANY:
+        from scipy.spatial import ConvexHull
+
+        return np.asarray(ConvexHull(points).simplices)
     moved = points + SHIFT * np.random.default_rng(0).standard_normal(points.shape)
     start = _tetrahedron(moved)
     inside = moved[start].mean(axis=0)
@@ -76,9 +80,3 @@ def _planes(points: Array, faces: Array) -> tuple[Array, Array]:
     a, b, c = points[faces[:, 0]], points[faces[:, 1]], points[faces[:, 2]]
     normals = np.cross(b - a, c - a)
     return normals, np.einsum("ij,ij->i", normals, a)
-
-
-def _qhull_faces(points: Array) -> Array:
-    from rttrr_pin.inspection import meshes  # loads SciPy
-
-    return meshes.hull_faces(points)

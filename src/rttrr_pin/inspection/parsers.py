@@ -8,15 +8,68 @@ by their source alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Sequence
+import enum
+from collections.abc import Callable, Collection, Iterator
 from dataclasses import dataclass
 
-from rttrr_pin.inspection import parser_inertia as inertia
-from rttrr_pin.inspection import parser_joints as joints
-from rttrr_pin.inspection.results import Behaviour, RuleMatch, Verdict
-from rttrr_pin.urdf.document import UrdfDocument
+from rttrr_pin.inspection import parser_rules as rules
+from rttrr_pin.inspection.structure import LIMITED
+from rttrr_pin.urdf.document import UrdfDocument, UrdfJoint
 
 Places = Callable[[UrdfDocument], Iterator[str]]
+
+
+class Behaviour(enum.StrEnum):
+    """What a parser does with a file, from best to worst."""
+
+    ACCEPT = "accept"
+    WARN = "warn"
+    ALTER = "alter"
+    EITHER = "either"
+    REFUSE = "refuse"
+
+
+MEANING = {
+    Behaviour.ACCEPT: "loads the robot as written",
+    Behaviour.WARN: "loads the robot as written, and prints a warning",
+    Behaviour.ALTER: "loads another robot than the one written",
+    Behaviour.EITHER: "the parser's version, or its own rounding, decides",
+    Behaviour.REFUSE: "does not load the file",
+}
+
+
+@dataclass(frozen=True)
+class RuleMatch:
+    """A rule of a parser that applies.
+
+    Attributes:
+        rule: the rule's id.
+        behaviour: what the parser does.
+        name: the link or joint.
+        reason: the rule in a sentence.
+        source: where the parser's source says so.
+    """
+
+    rule: str
+    behaviour: Behaviour
+    name: str
+    reason: str
+    source: str
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What one parser does with the file.
+
+    Attributes:
+        parser: its name.
+        behaviour: the worst of what its rules say.
+        matches: the rules that apply, and where.
+    """
+
+    parser: str
+    behaviour: Behaviour
+    matches: tuple[RuleMatch, ...]
 
 
 @dataclass(frozen=True)
@@ -54,126 +107,153 @@ PINOCCHIO, MUJOCO, DRAKE, GAZEBO, KDL, YOURDFPY = PARSERS = (
 URDFDOM = (PINOCCHIO, GAZEBO, KDL)
 """They parse with urdfdom."""
 
+
+def joints(holds: Callable[[UrdfJoint], object]) -> Places:
+    """The joints of which something holds."""
+    return lambda document: (joint.name for joint in document.joints.values() if holds(joint))
+
+
+def where(test: Callable[[UrdfDocument], Iterator[tuple[str, str]]], outcome: str) -> Places:
+    """The links of which a test comes out so."""
+    return lambda document: (name for name, came_out in test(document) if came_out == outcome)
+
+
+def _is_range(joint: UrdfJoint) -> bool:
+    """Whether it has both limits, the lower below the upper."""
+    limits = joint.limits
+    return {"lower", "upper"} <= limits.keys() and limits["lower"] < limits["upper"]
+
+
+MIMICKING = joints(lambda joint: joint.moves and joint.mimic is not None)
+
+PLANAR_OR_FLOATING = joints(lambda joint: joint.type in ("planar", "floating"))
+
 RULES = (
     Rule("urdfdom-limit", URDFDOM, Behaviour.REFUSE,
          "a revolute or prismatic joint has no <limit>",
-         "urdfdom: urdf_parser/src/joint.cpp, parseJoint", joints.without_limit),
+         "urdfdom: urdf_parser/src/joint.cpp, parseJoint",
+         joints(lambda joint: joint.type in LIMITED and joint.limit is None)),
     Rule("urdfdom-effort", URDFDOM, Behaviour.REFUSE,
          "a <limit> has no effort or no velocity",
-         "urdfdom: urdf_parser/src/joint.cpp, parseJointLimits", joints.without_effort),
+         "urdfdom: urdf_parser/src/joint.cpp, parseJointLimits",
+         joints(lambda joint: joint.limit is not None and not {"effort", "velocity"} <= joint.limit.keys())),
     Rule("urdfdom-inertial", URDFDOM, Behaviour.ALTER,
          "a mass or moment with a blank behind it, or an inertial origin with a tab or line end, is dropped",
-         "urdfdom: urdf_parser/src/link.cpp, parseInertial", inertia.unparsed),
+         "urdfdom: urdf_parser/src/link.cpp, parseInertial", rules.unparsed_inertial),
     Rule("urdfdom-joint", URDFDOM, Behaviour.REFUSE,
          "a joint's vector has a tab or line end, or a limit, damping, friction or mimic a blank behind it",
-         "urdfdom: urdf_parser/src/joint.cpp, parseJoint", joints.unparsed),
+         "urdfdom: urdf_parser/src/joint.cpp, parseJoint", joints(rules.unparsed_joint)),
     Rule("pinocchio-sum", (PINOCCHIO,), Behaviour.ALTER,
          "a mass, with what is fixed to it, is below eps: its first moment is divided by eps instead of the mass",
-         "pinocchio: include/pinocchio/spatial/inertia.hpp, InertiaTpl::__plus__", inertia.pinocchio_sum),
+         "pinocchio: include/pinocchio/spatial/inertia.hpp, InertiaTpl::__plus__", rules.pinocchio_sum),
     Rule("pinocchio-mimic", (PINOCCHIO,), Behaviour.ALTER,
          "<mimic> is ignored unless mimic=True is passed: the joint moves by itself",
-         "pinocchio: include/pinocchio/parsers/urdf.hpp, buildModel, argument mimic", joints.mimicking),
+         "pinocchio: include/pinocchio/parsers/urdf.hpp, buildModel, argument mimic", MIMICKING),
     Rule("mujoco-eigenvalue", (MUJOCO,), Behaviour.REFUSE,
          "a principal moment is below 1e-14 kg m^2 (mjEPS), and the inertia is not all zero",
-         "mujoco: src/user/user_util.cc, mjuu_fullInertia", inertia.mujoco_eigenvalue),
+         "mujoco: src/user/user_util.cc, mjuu_fullInertia", where(rules.mujoco_test, "eigenvalue")),
     Rule("mujoco-triangle", (MUJOCO,), Behaviour.REFUSE,
          "the principal moments violate A + B >= C, in floating point and without a tolerance",
-         "mujoco: src/user/user_objects.cc, mjCBody::Compile", inertia.mujoco_triangle),
+         "mujoco: src/user/user_objects.cc, mjCBody::Compile", where(rules.mujoco_test, "triangle")),
     Rule("mujoco-rounding", (MUJOCO,), Behaviour.EITHER,
          "one of the two limits above is so near that the rounding of the diagonalisation decides",
-         "mujoco: src/user/user_util.cc, mjuu_eig3", inertia.mujoco_rounding),
+         "mujoco: src/user/user_util.cc, mjuu_eig3", where(rules.mujoco_test, "rounding")),
     Rule("mujoco-minimum", (MUJOCO,), Behaviour.REFUSE,
          "a moving link, with what is fixed to it, has a mass or a principal moment below 1e-15 (mjMINVAL)",
-         "mujoco: src/user/user_model.cc, mjCModel::CheckBodyMassInertia", inertia.mujoco_minimum),
+         "mujoco: src/user/user_model.cc, mjCModel::CheckBodyMassInertia", rules.mujoco_minimum),
     Rule("mujoco-negative", (MUJOCO,), Behaviour.ALTER,
          "a negative mass, merged with other masses, becomes 0 (boundmass)",
-         "mujoco: src/user/user_objects.cc, mjCBody::Compile", inertia.mujoco_negative),
+         "mujoco: src/user/user_objects.cc, mjCBody::Compile", rules.mujoco_negative),
     Rule("mujoco-massless-tensor", (MUJOCO,), Behaviour.ALTER,
          "the inertia of a fixed link with a mass below 1e-15 kg (mjMINVAL) is dropped",
-         "mujoco: src/user/user_model.cc, mjCModel::FuseStatic", inertia.mujoco_massless_tensor),
+         "mujoco: src/user/user_model.cc, mjCModel::FuseStatic", rules.mujoco_massless_tensor),
     Rule("mujoco-geometry", (MUJOCO,), Behaviour.ALTER,
          "a link without <inertial> gets mass and inertia from its collision shapes, at 1000 kg/m^3",
-         "mujoco: src/user/user_objects.cc, mjCBody::InertiaFromGeom", inertia.mujoco_geometry),
+         "mujoco: src/user/user_objects.cc, mjCBody::InertiaFromGeom", rules.mujoco_geometry),
     Rule("mujoco-products", (MUJOCO,), Behaviour.EITHER,
          "before version 3.14, products of inertia below 1e-12 kg m^2 are dropped (kEigEPS)",
-         "mujoco: src/user/user_util.cc, mjuu_eig3", inertia.mujoco_products, at_worst=Behaviour.ALTER),
+         "mujoco: src/user/user_util.cc, mjuu_eig3", rules.mujoco_products, at_worst=Behaviour.ALTER),
     Rule("mujoco-rpy", (MUJOCO,), Behaviour.EITHER,
          "before version 3.14, the rpy of <inertial> is ignored: its tensor is taken in the axes of the link",
-         "mujoco: src/user/user_objects.cc, mjCBody::Compile", inertia.mujoco_rpy, at_worst=Behaviour.ALTER),
+         "mujoco: src/user/user_objects.cc, mjCBody::Compile", rules.mujoco_rpy, at_worst=Behaviour.ALTER),
     Rule("mujoco-fused", (MUJOCO,), Behaviour.EITHER,
          "from version 3.3.3 to 3.10, a fixed link that is turned, or whose principal axes are, is merged wrongly",
-         "mujoco: src/user/user_objects.cc, mjCBody::AccumulateInertia", inertia.mujoco_fused,
+         "mujoco: src/user/user_objects.cc, mjCBody::AccumulateInertia", rules.mujoco_fused,
          at_worst=Behaviour.ALTER),
     Rule("mujoco-mimic", (MUJOCO,), Behaviour.ALTER,
          "<mimic> is ignored before version 3.13, and then a soft constraint: the joint can move by itself",
-         "mujoco: src/xml/xml_urdf.cc, mjXURDF::Joint", joints.mimicking),
+         "mujoco: src/xml/xml_urdf.cc, mjXURDF::Joint", MIMICKING),
     Rule("mujoco-range", (MUJOCO,), Behaviour.ALTER,
          "a range of length zero, or with an end left out, is no limit: the joint moves freely",
-         "mujoco: src/xml/xml_urdf.cc, mjXURDF::Joint", joints.degenerate_range),
+         "mujoco: src/xml/xml_urdf.cc, mjXURDF::Joint",
+         joints(lambda joint: joint.type in LIMITED and joint.limit is not None and not _is_range(joint))),
     Rule("mujoco-continuous", (MUJOCO,), Behaviour.EITHER,
          "before version 4, the range of a continuous joint limits it",
-         "mujoco: src/xml/xml_urdf.cc, mjXURDF::Joint", joints.continuous_range, at_worst=Behaviour.ALTER),
+         "mujoco: src/xml/xml_urdf.cc, mjXURDF::Joint",
+         joints(lambda joint: joint.type == "continuous" and _is_range(joint)), at_worst=Behaviour.ALTER),
     Rule("mujoco-floating", (MUJOCO,), Behaviour.REFUSE,
          "a floating joint hangs on a link that moves",
-         "mujoco: src/user/user_model.cc, mjCModel::CopyTree", joints.floating_on_moving),
+         "mujoco: src/user/user_model.cc, mjCModel::CopyTree", rules.floating_on_moving),
     Rule("drake-inertia", (DRAKE,), Behaviour.ALTER,
          "an impossible inertia is replaced by that of a ball of water of the same mass, with a warning",
-         "drake: multibody/parsing/detail_common.cc, ParseSpatialInertia", inertia.drake_inertia),
+         "drake: multibody/parsing/detail_common.cc, ParseSpatialInertia", where(rules.drake_test, "invalid")),
     Rule("drake-rounding", (DRAKE,), Behaviour.EITHER,
          "the triangle inequality is violated by just Drake's tolerance, 16 eps max(1 kg m^2, trace / 2)",
          "drake: multibody/tree/rotational_inertia.cc, AreMomentsOfInertiaNearPositiveAndSatisfyTriangleInequality",
-         inertia.drake_rounding, at_worst=Behaviour.ALTER),
+         where(rules.drake_test, "rounding"), at_worst=Behaviour.ALTER),
     Rule("drake-mass", (DRAKE,), Behaviour.ALTER,
          "a negative mass, or none with an inertia, becomes 1 kg of water, with a warning",
-         "drake: multibody/parsing/detail_common.cc, ParseSpatialInertia", inertia.drake_mass),
+         "drake: multibody/parsing/detail_common.cc, ParseSpatialInertia", rules.drake_mass),
     Rule("drake-floating", (DRAKE,), Behaviour.ALTER,
          "a floating joint is left out, with a warning: the link is free in the world, whatever its parent",
-         "drake: multibody/parsing/detail_urdf_parser.cc, UrdfParser::ParseJoint", joints.floating),
+         "drake: multibody/parsing/detail_urdf_parser.cc, UrdfParser::ParseJoint",
+         joints(lambda joint: joint.type == "floating")),
     Rule("drake-mimic", (DRAKE,), Behaviour.REFUSE,
          "a fixed joint has a <mimic>",
-         "drake: multibody/parsing/detail_urdf_parser.cc, UrdfParser::ParseMimicTag", joints.fixed_mimic),
+         "drake: multibody/parsing/detail_urdf_parser.cc, UrdfParser::ParseMimicTag",
+         joints(lambda joint: not joint.moves and joint.mimic is not None)),
     Rule("gazebo-inertia", (GAZEBO,), Behaviour.REFUSE,
          "a link, with what is fixed to it, has an invalid inertia (LINK_INERTIA_INVALID)",
-         "sdformat: src/Link.cc, Link::Load; gz-math: MassMatrix3::IsValid", inertia.gazebo_inertia),
+         "sdformat: src/Link.cc, Link::Load; gz-math: MassMatrix3::IsValid", where(rules.gazebo_test, "invalid")),
     Rule("gazebo-rounding", (GAZEBO,), Behaviour.EITHER,
          "the triangle inequality is violated by just gz-math's tolerance, 5 eps trace, or by its rounding",
-         "gz-math: MassMatrix3::ValidMoments and MassMatrix3::PrincipalMoments", inertia.gazebo_rounding),
+         "gz-math: MassMatrix3::ValidMoments and MassMatrix3::PrincipalMoments", where(rules.gazebo_test, "rounding")),
     Rule("gazebo-massless", (GAZEBO,), Behaviour.ALTER,
          "a link without mass, with what is fixed to it, is left out with all links beyond it, with a warning",
-         "sdformat: src/parser_urdf.cc, CreateSDF", inertia.gazebo_massless),
+         "sdformat: src/parser_urdf.cc, CreateSDF", rules.gazebo_massless),
     Rule("gazebo-empty", (GAZEBO,), Behaviour.REFUSE,
          "the root link, with what is fixed to it, has no mass: with it all links are left out, and a model needs one",
-         "sdformat: src/parser_urdf.cc, CreateSDF; src/Model.cc, MODEL_WITHOUT_LINK", inertia.gazebo_empty),
+         "sdformat: src/parser_urdf.cc, CreateSDF; src/Model.cc, MODEL_WITHOUT_LINK", rules.gazebo_empty),
     Rule("gazebo-joint", (GAZEBO,), Behaviour.ALTER,
          "planar and floating joints are left out: the link is free in the world",
-         "sdformat: src/parser_urdf.cc, CreateJoint", joints.planar_or_floating),
+         "sdformat: src/parser_urdf.cc, CreateJoint", PLANAR_OR_FLOATING),
     Rule("kdl-root", (KDL,), Behaviour.ALTER,
          "the inertia of the root link is left out, with a warning",
-         "kdl_parser: src/kdl_parser.cpp, treeFromUrdfModel", inertia.kdl_root),
+         "kdl_parser: src/kdl_parser.cpp, treeFromUrdfModel", rules.kdl_root),
     Rule("kdl-joint", (KDL,), Behaviour.ALTER,
          "planar and floating joints become fixed, with a warning",
-         "kdl_parser: src/kdl_parser.cpp, toKdl", joints.planar_or_floating),
+         "kdl_parser: src/kdl_parser.cpp, toKdl", PLANAR_OR_FLOATING),
     Rule("kdl-mimic", (KDL,), Behaviour.ALTER,
          "<mimic> is ignored: the joint moves by itself",
-         "kdl_parser: src/kdl_parser.cpp, toKdl", joints.mimicking),
+         "kdl_parser: src/kdl_parser.cpp, toKdl", MIMICKING),
     Rule("yourdfpy-joint", (YOURDFPY,), Behaviour.ALTER,
          "planar and floating joints do not move, and a planar one counts as two degrees of freedom",
-         "yourdfpy: urdf.py, URDF._forward_kinematics_joint and URDF.num_dofs", joints.planar_or_floating),
+         "yourdfpy: urdf.py, URDF._forward_kinematics_joint and URDF.num_dofs", PLANAR_OR_FLOATING),
 )  # fmt: skip
 
 
 def verdicts(document: UrdfDocument) -> tuple[Verdict, ...]:
     """What each parser does with a file."""
-    matches = [
-        (rule, RuleMatch(rule.id, rule.behaviour, name, rule.reason, rule.source))
-        for rule in RULES
-        for name in rule.places(document)
-    ]
-    return tuple(_verdict(parser, [match for match in matches if parser in match[0].parsers]) for parser in PARSERS)
+    places = {rule: tuple(rule.places(document)) for rule in RULES}
 
+    def verdict(parser: str) -> Verdict:
+        own = [rule for rule in RULES if parser in rule.parsers and places[rule]]
+        matches = (
+            RuleMatch(rule.id, rule.behaviour, name, rule.reason, rule.source) for rule in own for name in places[rule]
+        )
+        return Verdict(parser, _worst(own), tuple(matches))
 
-def _verdict(parser: str, matches: Sequence[tuple[Rule, RuleMatch]]) -> Verdict:
-    return Verdict(parser, _worst({rule for rule, _ in matches}), tuple(match for _, match in matches))
+    return tuple(map(verdict, PARSERS))
 
 
 def _worst(rules: Collection[Rule]) -> Behaviour:

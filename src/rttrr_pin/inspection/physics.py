@@ -6,9 +6,8 @@ from collections.abc import Iterator
 from fractions import Fraction
 
 from rttrr_pin.inspection.bodies import principal
-from rttrr_pin.inspection.check import Check, Observation, Subject
+from rttrr_pin.inspection.checks import Edit, Observation, Severity, Subject, check
 from rttrr_pin.inspection.exact import Shape, is_positive, nearest_possible, rank, shape
-from rttrr_pin.inspection.results import Edit, Severity
 from rttrr_pin.urdf.decimals import text_of
 from rttrr_pin.urdf.document import UrdfInertial
 
@@ -18,15 +17,17 @@ def _empty(inertial: UrdfInertial) -> bool:
     return not any(number.exact for number in inertial.entries.values())
 
 
+@check("P101", Severity.ERROR)
 def negative_mass(subject: Subject) -> Iterator[Observation]:
-    """Mass below zero."""
+    """No mass is negative."""
     for link, inertial in subject.inertials():
         if inertial.mass.exact < 0:
             yield Observation(link, float(inertial.mass), "kg", "the mass is negative", "write the body's mass in kg")
 
 
+@check("P102", Severity.ERROR)
 def tensor_without_mass(subject: Subject) -> Iterator[Observation]:
-    """No mass, but a tensor."""
+    """A link without mass has no inertia either."""
     for link, inertial in subject.inertials():
         if inertial.mass.exact == 0 and not _empty(inertial):
             yield Observation(
@@ -35,8 +36,9 @@ def tensor_without_mass(subject: Subject) -> Iterator[Observation]:
             )  # fmt: skip
 
 
+@check("P103", Severity.WARNING)
 def moving_without_mass(subject: Subject) -> Iterator[Observation]:
-    """A moving link without mass that carries none either: its joint's torque moves nothing."""
+    """Each moving joint moves some mass."""
     document = subject.document
     massive = dict.fromkeys(document.links, False)
     massive |= {link.name: inertial.mass.exact != 0 for link, inertial in subject.inertials()}
@@ -51,8 +53,9 @@ def moving_without_mass(subject: Subject) -> Iterator[Observation]:
             )  # fmt: skip
 
 
+@check("P104", Severity.ERROR)
 def indefinite(subject: Subject) -> Iterator[Observation]:
-    """A negative moment of inertia about some axis."""
+    """The inertia is positive semidefinite."""
     for link, inertial in subject.inertials():
         if not is_positive(inertial) and nearest_possible(inertial) is None:
             yield Observation(
@@ -62,8 +65,9 @@ def indefinite(subject: Subject) -> Iterator[Observation]:
             )  # fmt: skip
 
 
+@check("P105", Severity.ERROR)
 def triangle(subject: Subject) -> Iterator[Observation]:
-    """I1 + I2 < I3: Sigma, and with it the pseudo-inertia, has a negative eigenvalue."""
+    """The principal moments fulfil the triangle inequality; with it the 4x4 pseudo-inertia is positive semidefinite."""
     for link, inertial in subject.inertials():
         if is_positive(inertial) and rank(inertial) is None and nearest_possible(inertial) is None:
             low, mid, high = principal(inertial.tensor)[0]
@@ -75,8 +79,9 @@ def triangle(subject: Subject) -> Iterator[Observation]:
             )  # fmt: skip
 
 
+@check("P106", Severity.WARNING)
 def triangle_by_rounding(subject: Subject) -> Iterator[Observation]:
-    """No body has these digits, but one has numbers that round to them."""
+    """The digits written fulfil P104 and P105, and not only numbers that round to them."""
     for link, inertial in subject.inertials():
         possible = nearest_possible(inertial) if rank(inertial) is None else None
         if possible is not None:
@@ -104,8 +109,9 @@ BOUNDARY = {
 }
 
 
+@check("P107", Severity.NOTE)
 def boundary(subject: Subject) -> Iterator[Observation]:
-    """Flat plates and thin rods, which are possible and at the very edge."""
+    """The body has thickness: it is no exact plate and no exact rod."""
     for link, inertial in subject.inertials():
         body = shape(inertial)
         if body in BOUNDARY:
@@ -115,26 +121,12 @@ def boundary(subject: Subject) -> Iterator[Observation]:
             )  # fmt: skip
 
 
+@check("P108", Severity.WARNING)
 def point_mass(subject: Subject) -> Iterator[Observation]:
-    """Mass, but no tensor."""
+    """A link with mass has an inertia."""
     for link, inertial in subject.inertials():
         if shape(inertial) is Shape.POINT:
             yield Observation(
                 link, float(inertial.mass), "kg", "there is a mass, but the inertia is zero: a point",
                 "write the inertia about the centre of mass",
             )  # fmt: skip
-
-
-CHECKS = (
-    Check("P101", Severity.ERROR, "No mass is negative.", negative_mass),
-    Check("P102", Severity.ERROR, "A link without mass has no inertia either.", tensor_without_mass),
-    Check("P103", Severity.WARNING, "Each moving joint moves some mass.", moving_without_mass),
-    Check("P104", Severity.ERROR, "The inertia is positive semidefinite.", indefinite),
-    Check("P105", Severity.ERROR,
-          "The principal moments fulfil the triangle inequality; with it the 4x4 pseudo-inertia is positive "
-          "semidefinite.", triangle),
-    Check("P106", Severity.WARNING, "The digits written fulfil P104 and P105, and not only numbers that round to them.",
-          triangle_by_rounding),
-    Check("P107", Severity.NOTE, "The body has thickness: it is no exact plate and no exact rod.", boundary),
-    Check("P108", Severity.WARNING, "A link with mass has an inertia.", point_mass),
-)  # fmt: skip

@@ -12,11 +12,10 @@ from rttrr_pin.core.algebra import Vector
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.inspection.bodies import principal
-from rttrr_pin.inspection.check import Check, Observation, Subject
+from rttrr_pin.inspection.checks import Edit, Observation, Severity, Subject, check
 from rttrr_pin.inspection.exact import DIAGONAL
-from rttrr_pin.inspection.results import Edit, Severity
 from rttrr_pin.inspection.shapes import Filled, Looks
-from rttrr_pin.urdf.document import UrdfInertial, UrdfLink
+from rttrr_pin.urdf.document import ENTRIES, UrdfInertial, UrdfLink
 
 LARGEST_GYRATION = 1.5
 """Radius of gyration over the distance of the farthest point drawn. No mass inside the drawing gives more than 1."""
@@ -83,8 +82,9 @@ def _cases(subject: Subject) -> Iterator[Case]:
                 yield Case(link, inertial, looks)
 
 
+@check("G201", Severity.WARNING)
 def too_wide(subject: Subject) -> Iterator[Observation]:
-    """The radius of gyration exceeds the geometry."""
+    """The radius of gyration is within the link's geometry."""
     for case in _cases(subject):
         if case.gyration > LARGEST_GYRATION * case.reach:
             yield Observation(
@@ -95,8 +95,9 @@ def too_wide(subject: Subject) -> Iterator[Observation]:
             )  # fmt: skip
 
 
+@check("G202", Severity.WARNING)
 def too_narrow(subject: Subject) -> Iterator[Observation]:
-    """The radius of gyration is a small part of the geometry."""
+    """The radius of gyration is at least a tenth of the link's reach."""
     for case in _cases(subject):
         if case.gyration < SMALLEST_GYRATION * case.reach:
             yield Observation(
@@ -116,8 +117,9 @@ def _unit_hint(case: Case) -> str:
     return f"; in {fitting[0]} it would suit" if fitting else ""
 
 
+@check("G203", Severity.WARNING)
 def density(subject: Subject) -> Iterator[Observation]:
-    """Lighter than an open frame, or heavier than any metal."""
+    """The mass over the volume of the hull is a density that things have."""
     for case in _cases(subject):
         if case.looks.volume < MARKER:
             continue
@@ -132,8 +134,9 @@ def density(subject: Subject) -> Iterator[Observation]:
             )  # fmt: skip
 
 
+@check("G204", Severity.WARNING)
 def com_outside(subject: Subject) -> Iterator[Observation]:
-    """The centre of mass lies far from all that is drawn."""
+    """The centre of mass lies in or near the link's geometry."""
     for case in _cases(subject):
         low, high = case.looks.points.min(axis=0), case.looks.points.max(axis=0)
         com = case.inertial.origin.p
@@ -225,9 +228,8 @@ def _distance(x: Array, wanted: Array) -> float:
 
 def _rewrite(case: Case, reading: Reading) -> tuple[Edit, ...]:
     """The tensor as it would have to be written."""
-    places = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
     small = 1e-12 * float(np.abs(reading.written).max())
-    values = {name: float(reading.written[at]) for name, at in places.items()}
+    values = {name: float(reading.written[at]) for name, at in ENTRIES.items()}
     return tuple(
         Edit(case.link.name, "inertia", name, f"{0.0 if abs(value) < small else value:.9g}")
         for name, value in values.items()
@@ -235,23 +237,27 @@ def _rewrite(case: Case, reading: Reading) -> tuple[Edit, ...]:
     )
 
 
+@check("G205", Severity.WARNING)
 def about_origin(subject: Subject) -> Iterator[Observation]:
-    """The tensor is about the link's origin."""
+    """The inertia is about the centre of mass, not about the link's origin."""
     return _misread(subject, _about_origin, "subtract m (c.c 1 - c c^T), the parallel-axis term")
 
 
+@check("G206", Severity.WARNING)
 def swapped(subject: Subject) -> Iterator[Observation]:
-    """Two or three of ixx, iyy, izz are exchanged."""
+    """ixx, iyy, izz stand in their own slots."""
     return _misread(subject, _slots, "write each moment into its own slot, or the rpy that the inertial frame lacks")
 
 
+@check("G207", Severity.WARNING)
 def wrong_power(subject: Subject) -> Iterator[Observation]:
-    """Another unit than kg m^2."""
+    """The inertia is in kg m^2."""
     return _misread(subject, _powers, "write the inertia in kg m^2")
 
 
+@check("G208", Severity.NOTE)
 def unknown(subject: Subject) -> Iterator[Observation]:
-    """Links with mass whose geometry could not be read."""
+    """The geometry of each link with mass could be read."""
     lost = [
         link.name for link, inertial in subject.inertials() if inertial.mass.exact > 0 and subject.looks(link).missing
     ]
@@ -262,17 +268,3 @@ def unknown(subject: Subject) -> Iterator[Observation]:
             f"not compared with their geometry, whose meshes were not found: {shown}",
             "inspect the file where its meshes lie",
         )  # fmt: skip
-
-
-CHECKS = (
-    Check("G201", Severity.WARNING, "The radius of gyration is within the link's geometry.", too_wide),
-    Check("G202", Severity.WARNING, "The radius of gyration is at least a tenth of the link's reach.", too_narrow),
-    Check("G203", Severity.WARNING, "The mass over the volume of the hull is a density that things have.", density),
-    Check("G204", Severity.WARNING, "The centre of mass lies in or near the link's geometry.", com_outside),
-    Check(
-        "G205", Severity.WARNING, "The inertia is about the centre of mass, not about the link's origin.", about_origin
-    ),
-    Check("G206", Severity.WARNING, "ixx, iyy, izz stand in their own slots.", swapped),
-    Check("G207", Severity.WARNING, "The inertia is in kg m^2.", wrong_power),
-    Check("G208", Severity.NOTE, "The geometry of each link with mass could be read.", unknown),
-)

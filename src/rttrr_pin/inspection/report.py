@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.inspection.results import MEANING, Behaviour, Finding, LinkRow, Severity, Verdict
+from rttrr_pin.inspection.bodies import LinkRow
+from rttrr_pin.inspection.checks import Finding, Severity
+from rttrr_pin.inspection.parsers import MEANING, Behaviour, Verdict
 
 if TYPE_CHECKING:
-    from rttrr_pin.inspection.fix import Repaired
-    from rttrr_pin.inspection.run import Inspection
+    from rttrr_pin.inspection.run import Inspection, Repaired
 
 MOST_LINKS = 40
 """Beyond it the table shows the first links, unless all are asked for."""

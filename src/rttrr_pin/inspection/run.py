@@ -1,26 +1,36 @@
-"""An inspection: the tree, its bodies, the findings, the verdicts."""
+"""An inspection: the tree, its bodies, the findings, the verdicts; and the repairs that are certain."""
 
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+from xml.parsers import expat
 
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.errors import InputError, UnknownNameError
-from rttrr_pin.inspection import report
-from rttrr_pin.inspection.bodies import centre_of_mass, tree
-from rttrr_pin.inspection.check import Subject
-from rttrr_pin.inspection.parsers import verdicts
-from rttrr_pin.inspection.results import Finding, LinkRow, Severity, Verdict
-from rttrr_pin.inspection.table import chosen
-from rttrr_pin.robot import Robot
+from rttrr_pin.inspection import physics, plausibility, report, structure
+from rttrr_pin.inspection.bodies import LinkRow, centre_of_mass, tree
+from rttrr_pin.inspection.checks import Check, Edit, Finding, Severity, Subject
+from rttrr_pin.inspection.parsers import Verdict, verdicts
 from rttrr_pin.urdf.document import UrdfDocument
+
+if TYPE_CHECKING:
+    from rttrr_pin.robot import Robot
+
+CHECKS = tuple(
+    check
+    for module in (physics, plausibility, structure)
+    for check in vars(module).values()
+    if isinstance(check, Check)
+)
+"""All checks, in the order of their modules and of the lines there, which is that of their ids."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -105,10 +115,20 @@ def inspect(
         InputError: the robot was made from numbers and has no file.
         UnknownNameError: a prefix fits no check.
     """
-    checks = chosen(select, ignore)
     document = robot.model.document
     if not isinstance(document, UrdfDocument):
         raise InputError(f"robot {robot.name!r} has no URDF text: inspect looks at files; load the robot from one")
+    return inspect_document(document, folder, select, ignore)
+
+
+def inspect_document(
+    document: UrdfDocument,
+    folder: str | os.PathLike[str] | None = None,
+    select: Iterable[str] = (),
+    ignore: Iterable[str] = (),
+) -> Inspection:
+    """The same of a file that was read, without the robot that it describes."""
+    checks = _chosen(tuple(select), tuple(ignore))
     subject = Subject(document, document.folder if folder is None else Path(folder))
     with np.errstate(all="ignore"):  # 1e308 is a number; what overflows is shown as inf, and no verdict rests on it
         findings = [finding for check in checks for finding in check.findings(subject)]
@@ -123,3 +143,78 @@ def inspect(
             verdicts=verdicts(document),
             text=document.text,
         )
+
+
+def _chosen(select: tuple[str, ...], ignore: tuple[str, ...]) -> list[Check]:
+    """The checks whose ids begin with one of the prefixes `select`, if there are any, and with none of `ignore`."""
+    for prefix in (*select, *ignore):
+        if not prefix or not any(check.id.startswith(prefix) for check in CHECKS):
+            raise UnknownNameError("check", prefix, [check.id for check in CHECKS])
+    return [check for check in CHECKS if check.id.startswith(select or "") and not check.id.startswith(ignore)]
+
+
+@dataclass(frozen=True)
+class Repaired:
+    """A repaired file.
+
+    Attributes:
+        text: its text.
+        done: the findings that were mended.
+        left: the findings that were not.
+    """
+
+    text: str
+    done: tuple[Finding, ...]
+    left: tuple[Finding, ...]
+
+
+def repair(inspection: Inspection) -> Repaired:
+    """Make all repairs that are certain, in the file's own text: only values change, every other byte stays.
+
+    A link with more than one finding is left alone: its numbers have no one certain meaning.
+    """
+    repairs: dict[str, set[tuple[Edit, ...]]] = {}
+    for finding in inspection.findings:
+        if finding.repair:
+            repairs.setdefault(finding.name, set()).add(finding.repair)
+    done = [finding for finding in inspection.findings if finding.repair and len(repairs[finding.name]) == 1]
+    return Repaired(
+        text=_edited(inspection.text, [edit for finding in done for edit in finding.repair]),
+        done=tuple(done),
+        left=tuple(finding for finding in inspection.findings if finding not in done),
+    )
+
+
+def _edited(text: str, edits: Iterable[Edit]) -> str:
+    """The text of a URDF with new values of attributes that are there."""
+    whole = text.encode()
+    for start, link, tag in reversed(_inertial_tags(whole)):  # from the end, so that the places before stay
+        for edit in edits:
+            if (edit.link, edit.tag) == (link, tag):
+                whole = whole[:start] + _replaced(whole[start:], edit)
+    return whole.decode()
+
+
+def _replaced(tail: bytes, edit: Edit) -> bytes:
+    """The text from a tag on, with one attribute of that tag changed; its quotation marks stay."""
+    pattern = rf"(\s{edit.attribute}\s*=\s*)(\"[^\"]*\"|'[^']*')".encode()
+    return re.sub(pattern, lambda match: match[1] + match[2][:1] + edit.text.encode() + match[2][-1:], tail, count=1)
+
+
+def _inertial_tags(text: bytes) -> list[tuple[int, str, str]]:
+    """The tags inside the <inertial> of each link: where each begins, in bytes (lxml knows lines only), link, tag."""
+    tags, path, link = list[tuple[int, str, str]](), list[str](), ""
+    parser = expat.ParserCreate("utf-8")
+
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        nonlocal link
+        if path == ["robot"] and tag == "link":
+            link = attributes.get("name", "")
+        if path == ["robot", "link", "inertial"]:
+            tags.append((parser.CurrentByteIndex, link, tag))
+        path.append(tag)
+
+    parser.StartElementHandler = start
+    parser.EndElementHandler = lambda tag: path.pop()
+    parser.Parse(text, True)
+    return tags

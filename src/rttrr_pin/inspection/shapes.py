@@ -6,10 +6,14 @@ downloaded, and a mesh that cannot be read leaves the geometry unknown.
 
 from __future__ import annotations
 
+import logging
+import warnings
 from collections.abc import Iterable
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import product
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -142,15 +146,37 @@ def _hull(role: str, clouds: Iterable[Array]) -> Filled | None:
 def _mesh_points(shape: UrdfShape, folder: Path | None) -> Array:
     """The corners of a mesh's hull, scaled; none where it cannot be read."""
     path = None if folder is None or shape.tag != "mesh" else find_mesh(shape.attributes.get("filename", ""), folder)
-    if path is None:
-        return np.zeros((0, 3))
-    from rttrr_pin.inspection import meshes  # loads trimesh
-
     try:
         scale = [float(word) for word in shape.attributes.get("scale", "1 1 1").split()]
     except ValueError:
+        path = None
+    if path is None:
         return np.zeros((0, 3))
-    return meshes.load_corners(path) * (np.array(scale) if len(scale) == 3 else 1.0)
+    return load_corners(path) * (np.array(scale) if len(scale) == 3 else 1.0)
+
+
+@lru_cache(maxsize=512)
+def load_corners(path: Path) -> Array:
+    """The corners of a mesh's hull, (N, 3) [m]; none where it cannot be read."""
+    import trimesh  # slow to import, as SciPy is: robots without meshes do without
+    from scipy.spatial import ConvexHull
+
+    logger = logging.getLogger("trimesh")
+    level = logger.level
+    logger.setLevel(logging.CRITICAL)
+    try:
+        with warnings.catch_warnings(), np.errstate(all="ignore"):
+            warnings.simplefilter("ignore")
+            mesh: Any = trimesh.load(path, force="mesh", process=False, skip_materials=True)
+            if mesh.units not in (None, "m", "meter", "meters"):
+                mesh.convert_units("meters")
+            points = np.asarray(mesh.vertices, dtype=np.float64)
+            points = points[np.isfinite(points).all(axis=1)]
+            return points[ConvexHull(points).vertices] if len(points) > 100 else points
+    except Exception:  # whatever a damaged mesh does to its reader, inspection goes on without it
+        return np.zeros((0, 3))
+    finally:
+        logger.setLevel(level)
 
 
 def find_mesh(filename: str, folder: Path) -> Path | None:

@@ -6,7 +6,7 @@ is converted before it is asked for: a number is a text that becomes a double or
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -18,11 +18,19 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joints import JOINT_TYPES
 from rttrr_pin.core.solids import rotation
 from rttrr_pin.urdf.decimals import Number, NumberList
-from rttrr_pin.urdf.vocabulary import ATTRIBUTES
 
 T = TypeVar("T")
 
 ZEROS = NumberList("0 0 0")
+
+ENTRIES = {f"i{'xyz'[i]}{'xyz'[j]}": (i, j) for i in range(3) for j in range(i, 3)}
+"""Row and column of URDF's six entries of a tensor: ixx, ixy, ixz, iyy, iyz, izz."""
+
+
+def symmetric(entries: Mapping[str, T]) -> tuple[tuple[T, T, T], ...]:
+    """The 3x3 tensor of URDF's six entries."""
+    xx, xy, xz, yy, yz, zz = (entries[name] for name in ENTRIES)
+    return (xx, xy, xz), (xy, yy, yz), (xz, yz, zz)
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,8 +77,7 @@ class UrdfInertial:
 
     def tensor_of(self, value: Callable[[Number], T]) -> tuple[tuple[T, T, T], ...]:
         """The symmetric tensor in the inertial frame, each entry converted."""
-        xx, xy, xz, yy, yz, zz = (value(self.entries[name]) for name in ATTRIBUTES["inertia"])
-        return (xx, xy, xz), (xy, yy, yz), (xz, yz, zz)
+        return symmetric({name: value(number) for name, number in self.entries.items()})
 
     @cached_property
     def tensor(self) -> Array:

@@ -1,14 +1,68 @@
-"""What a check is: a row of a table, and the function that looks for places where it does not hold."""
+"""What a check is: an id, a severity, a statement, and a function that looks for places where that does not hold."""
 
 from __future__ import annotations
 
+import enum
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from rttrr_pin.inspection.results import Edit, Finding, Severity
 from rttrr_pin.inspection.shapes import Looks, looks_of
 from rttrr_pin.urdf.document import UrdfDocument, UrdfInertial, UrdfJoint, UrdfLink
+
+
+class Severity(enum.StrEnum):
+    """How bad a finding is."""
+
+    ERROR = "error"
+    WARNING = "warning"
+    NOTE = "note"
+
+
+@dataclass(frozen=True)
+class Edit:
+    """A new value for an attribute of a link's <inertia> or <mass>.
+
+    Attributes:
+        link: the link.
+        tag: `"inertia"` or `"mass"`.
+        attribute: such as `"ixx"`.
+        text: the new value.
+    """
+
+    link: str
+    tag: str
+    attribute: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Finding:
+    """Something that is wrong, or looks wrong, or is worth knowing.
+
+    Attributes:
+        id: the check's stable id, such as `"P105"`.
+        severity: how bad it is.
+        kind: `"link"` or `"joint"`, or `"robot"`.
+        name: the link's or joint's name.
+        line: its line in the file.
+        value: the number that was judged; None where there is none.
+        unit: its unit; empty for a ratio.
+        reason: what is wrong with it.
+        fix: what to do about it.
+        repair: the edits that mend it, where they are certain.
+    """
+
+    id: str
+    severity: Severity
+    kind: str
+    name: str
+    line: int
+    value: float | None
+    unit: str
+    reason: str
+    fix: str
+    repair: tuple[Edit, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -52,7 +106,7 @@ KINDS = {UrdfLink: "link", UrdfJoint: "joint", UrdfDocument: "robot"}
 
 @dataclass(frozen=True)
 class Check:
-    """A row of the table of checks.
+    """A check.
 
     Attributes:
         id: stable; its letter is the kind of check: P physics, G geometry, T mirrored links, J joints, C conventions.
@@ -74,3 +128,8 @@ class Check:
                 self.id, self.severity, KINDS[type(seen.at)], seen.at.name, line,
                 seen.value, seen.unit, seen.reason, seen.fix, seen.repair,
             )  # fmt: skip
+
+
+def check(id: str, severity: Severity) -> Callable[[Callable[[Subject], Iterator[Observation]]], Check]:
+    """Makes a check of a function, whose docstring is the statement."""
+    return lambda find: Check(id, severity, find.__doc__ or "", find)

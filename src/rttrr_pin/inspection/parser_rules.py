@@ -1,20 +1,24 @@
-"""Where the rules of parsers about mass and inertia apply: each function yields the names of links.
+"""Where the rules of parsers apply that take more than a glance at a joint: names of joints and links.
 
-Thresholds and tolerances are the parsers'. Where a tensor lies nearer to a threshold than the parser's own
-rounding, no rule can say what it does, and a rule with the verdict "either" says so.
+A *test* yields names and how the parser's test of each comes out. Thresholds and tolerances are the parsers'. Where a
+tensor lies nearer to a threshold than the parser's own rounding, no rule can say what it does: the test comes out as
+"rounding", for which there is a rule with the verdict "either".
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
+from rttrr_pin.core.algebra import Vector
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.inspection.bodies import principal
-from rttrr_pin.inspection.merged_links import merged_links
 from rttrr_pin.urdf.decimals import blank_behind, other_blanks
-from rttrr_pin.urdf.document import UrdfDocument, UrdfInertial
+from rttrr_pin.urdf.document import UrdfDocument, UrdfInertial, UrdfJoint
 
 EPS = float(np.finfo(np.float64).eps)
 
@@ -37,8 +41,71 @@ GAZEBO_DIAGONAL, GAZEBO_ROUNDING = 1e-6, 1e-7
 which loses half of the digits where two moments are equal."""
 
 
-def _inertials(document: UrdfDocument) -> Iterator[tuple[str, UrdfInertial]]:
-    return ((name, link.inertial) for name, link in document.links.items() if link.inertial is not None)
+@dataclass(frozen=True, eq=False)
+class MergedLink:
+    """A link with all that is fixed to it.
+
+    Attributes:
+        members: the names of the links, the one that carries the others first.
+        mass: [kg].
+        moment: the first moment, mass times centre of mass, in the link frame, (3,) [kg m].
+        inertia: about the centre of mass, in link axes, (3, 3) [kg m^2]; where only one member has mass these are that
+            member's numbers, turned if its frame is: `SpatialInertia`, about the origin, would round them.
+    """
+
+    members: tuple[str, ...]
+    mass: float
+    moment: Array
+    inertia: Array
+
+    def __add__(self, other: MergedLink) -> MergedLink:
+        """Both together, in the same frame."""
+        members, mass = self.members + other.members, self.mass + other.mass
+        inertia = self.inertia + other.inertia
+        if self.mass and other.mass and mass:
+            d = self.moment / self.mass - other.moment / other.mass
+            inertia = inertia + self.mass * other.mass / mass * point_tensor(Vector.of(d)).array
+        return MergedLink(members, mass, self.moment + other.moment, inertia)
+
+    def moved(self, R: Array, p: Array) -> MergedLink:
+        """The same in the frame of a parent, where the link's frame has rotation R and origin p."""
+        turned = self.inertia if np.array_equal(R, np.eye(3)) else R @ self.inertia @ R.T
+        return MergedLink(self.members, self.mass, R @ self.moment + self.mass * p, turned)
+
+
+@lru_cache(maxsize=8)
+def merged_links(document: UrdfDocument, massive_only: bool = False, spare: str = "") -> dict[str, MergedLink]:
+    """Bodies as parsers see them that merge fixed joints: by name, each link that is not itself fixed to another.
+
+    Args:
+        document: the file.
+        massive_only: whether links whose mass is not above zero count for nothing.
+        spare: a link to which nothing is merged.
+    """
+    merged = {}
+    for name, link in document.links.items():
+        merged[name] = MergedLink((name,), 0.0, np.zeros(3), np.zeros((3, 3)))
+        if link.inertial is not None and not (massive_only and link.inertial.mass.exact <= 0):
+            mass = float(link.inertial.mass)
+            merged[name] = MergedLink((name,), mass, mass * link.inertial.origin.p, link.inertial.inertia)
+    for _, name in reversed(list(document.walk())):
+        joint = document.carried_by.get(name)
+        if joint is not None and not joint.moves and joint.parent != spare:
+            merged[joint.parent] += merged.pop(name).moved(joint.origin.R, joint.origin.p)
+    return merged
+
+
+def _anchored(document: UrdfDocument) -> tuple[str, ...]:
+    """The root and what is fixed to it."""
+    return merged_links(document)[document.root].members
+
+
+def _inertials(document: UrdfDocument, moving: bool = False) -> Iterator[tuple[str, UrdfInertial]]:
+    """Of all links that have one, or of those that do not belong to the world."""
+    left_out = _anchored(document) if moving else ()
+    for name, link in document.links.items():
+        if link.inertial is not None and name not in left_out:
+            yield name, link.inertial
 
 
 def _products(tensor: Array) -> float:
@@ -46,20 +113,34 @@ def _products(tensor: Array) -> float:
     return float(max(abs(tensor[0, 1]), abs(tensor[0, 2]), abs(tensor[1, 2])))
 
 
-def _sorted_moments(tensor: Array, negligible: float) -> Array:
+def _sorted_moments(tensor: Array, negligible: float = 0.0) -> Array:
     """Principal moments, ascending; the diagonal itself, not rounded, where all products are negligible."""
     if _products(tensor) <= negligible:
         return np.sort(tensor.diagonal())
     return principal(tensor)[0]
 
 
-def unparsed(document: UrdfDocument) -> Iterator[str]:
-    """Links with a blank behind a number of the <inertial>, or other blanks than spaces between numbers."""
+def unparsed_joint(joint: UrdfJoint) -> bool:
+    """A blank behind a number, or other blanks than spaces between numbers."""
+    numbers = [joint.damping, joint.friction, *(joint.limit or {}).values()]
+    numbers += [joint.mimic.multiplier, joint.mimic.offset] if joint.mimic else []
+    vectors = [joint.origin.xyz, joint.origin.rpy] + [joint.axis] * (joint.type not in ("fixed", "floating"))
+    return any(map(blank_behind, numbers)) or any(map(other_blanks, vectors))
+
+
+def unparsed_inertial(document: UrdfDocument) -> Iterator[str]:
+    """The same of an <inertial>."""
     for name, inertial in _inertials(document):
         numbers = (inertial.mass, *inertial.entries.values())
         vectors = (inertial.origin.xyz, inertial.origin.rpy)
         if any(map(blank_behind, numbers)) or any(map(other_blanks, vectors)):
             yield name
+
+
+def floating_on_moving(document: UrdfDocument) -> Iterator[str]:
+    """Floating joints on links that are not fixed to the root."""
+    anchored, joints = _anchored(document), document.joints.values()
+    return (joint.name for joint in joints if joint.type == "floating" and joint.parent not in anchored)
 
 
 def pinocchio_sum(document: UrdfDocument) -> Iterator[str]:
@@ -71,37 +152,19 @@ def pinocchio_sum(document: UrdfDocument) -> Iterator[str]:
             yield name
 
 
-def _mujoco_margins(tensor: Array) -> tuple[float, float, float]:
-    """How far MuJoCo's two tests are fulfilled, and by how much its rounding may move that."""
-    low, mid, high = (float(x) for x in _sorted_moments(tensor, 0.0))
-    slack = JACOBI * (1.0 + abs(low) + abs(mid) + abs(high)) if _products(tensor) else 0.0
-    return low - SMALLEST_EIGENVALUE, (low + mid) - high, slack
-
-
-def _mujoco_tested(document: UrdfDocument) -> Iterator[tuple[str, float, float, float]]:
-    """Tensors that MuJoCo diagonalises: all but those of six zeros."""
+def mujoco_test(document: UrdfDocument) -> Iterator[tuple[str, str]]:
+    """The test of tensors that MuJoCo fails, first of the moments, then of the triangle; six zeros it does not test."""
     for name, inertial in _inertials(document):
         if inertial.tensor.any():
-            yield (name, *_mujoco_margins(inertial.tensor))
-
-
-def mujoco_eigenvalue(document: UrdfDocument) -> Iterator[str]:
-    """A principal moment is surely too small."""
-    return (name for name, smallest, _, slack in _mujoco_tested(document) if smallest < -slack)
-
-
-def mujoco_triangle(document: UrdfDocument) -> Iterator[str]:
-    """The triangle inequality is surely violated."""
-    return (
-        name for name, smallest, triangle, slack in _mujoco_tested(document) if smallest >= -slack and triangle < -slack
-    )
-
-
-def mujoco_rounding(document: UrdfDocument) -> Iterator[str]:
-    """One of the two tests is open, and the other is not surely failed."""
-    for name, smallest, triangle, slack in _mujoco_tested(document):
-        if slack and min(smallest, triangle) >= -slack and min(smallest, triangle) < slack:
-            yield name
+            low, mid, high = (float(x) for x in _sorted_moments(inertial.tensor))
+            slack = JACOBI * (1.0 + abs(low) + abs(mid) + abs(high)) if _products(inertial.tensor) else 0.0
+            smallest, triangle = low - SMALLEST_EIGENVALUE, (low + mid) - high
+            if smallest < -slack:
+                yield name, "eigenvalue"
+            elif triangle < -slack:
+                yield name, "triangle"
+            elif min(smallest, triangle) < slack:
+                yield name, "rounding"
 
 
 def mujoco_minimum(document: UrdfDocument) -> Iterator[str]:
@@ -110,7 +173,7 @@ def mujoco_minimum(document: UrdfDocument) -> Iterator[str]:
         if name == document.root or any(_from_shapes(document, member) for member in merged.members):
             continue
         smallest = SMALLEST_MOVING if len(merged.members) == 1 else SMALLEST_EIGENVALUE
-        if merged.mass < SMALLEST_MOVING or float(_sorted_moments(merged.inertia, 0.0)[0]) < smallest:
+        if merged.mass < SMALLEST_MOVING or float(_sorted_moments(merged.inertia)[0]) < smallest:
             yield name
 
 
@@ -120,21 +183,16 @@ def _from_shapes(document: UrdfDocument, name: str) -> bool:
     return link.inertial is None and any(shape.role == "collision" for shape in link.shapes)
 
 
-def _moving(document: UrdfDocument) -> Iterator[tuple[str, UrdfInertial]]:
-    """Links that do not belong to the world."""
-    anchored = merged_links(document)[document.root].members
-    return ((name, inertial) for name, inertial in _inertials(document) if name not in anchored)
-
-
 def mujoco_negative(document: UrdfDocument) -> Iterator[str]:
     """Negative masses of links that are merged; of a link by itself, that is too little mass."""
     several = {name for merged in merged_links(document).values() if len(merged.members) > 1 for name in merged.members}
-    return (name for name, inertial in _moving(document) if name in several and inertial.mass.exact < 0)
+    moving = _inertials(document, moving=True)
+    return (name for name, inertial in moving if name in several and inertial.mass.exact < 0)
 
 
 def mujoco_massless_tensor(document: UrdfDocument) -> Iterator[str]:
     """Inertia without mass that is merged into a link."""
-    for name, inertial in _moving(document):
+    for name, inertial in _inertials(document, moving=True):
         massless = 0 <= inertial.mass.exact < SMALLEST_MOVING
         if massless and not document.carried_by[name].moves and inertial.tensor.any():
             yield name
@@ -142,13 +200,13 @@ def mujoco_massless_tensor(document: UrdfDocument) -> Iterator[str]:
 
 def mujoco_geometry(document: UrdfDocument) -> Iterator[str]:
     """Links with collision shapes but without <inertial>, unless they belong to the world."""
-    anchored = merged_links(document)[document.root].members
+    anchored = _anchored(document)
     return (name for name in document.links if name not in anchored and _from_shapes(document, name))
 
 
 def mujoco_products(document: UrdfDocument) -> Iterator[str]:
     """Products below 1e-12 that are not negligible."""
-    for name, inertial in _moving(document):
+    for name, inertial in _inertials(document, moving=True):
         largest = _products(inertial.tensor)
         if NEGLIGIBLE * abs(float(np.trace(inertial.tensor))) < largest < SMALLEST_PRODUCT:
             yield name
@@ -156,7 +214,8 @@ def mujoco_products(document: UrdfDocument) -> Iterator[str]:
 
 def mujoco_rpy(document: UrdfDocument) -> Iterator[str]:
     """Tensors that their rpy turns into others."""
-    return (name for name, inertial in _moving(document) if _differ(inertial.inertia, inertial.tensor))
+    moving = _inertials(document, moving=True)
+    return (name for name, inertial in moving if _differ(inertial.inertia, inertial.tensor))
 
 
 def _differ(turned: Array, tensor: Array) -> bool:
@@ -188,28 +247,19 @@ def _misplaced(inertial: UrdfInertial, R: Array, p: Array) -> bool:
     return axes_turned or bool(inertial.origin.p.any()) or _differ(R @ tensor @ R.T, tensor)
 
 
-def _beyond(moments: Array, tolerance: float, rounding: float) -> bool | None:
-    """Whether triangle inequality or positivity is violated by more than a tolerance; None where rounding decides."""
+def _outcome(moments: Array, tolerance: float, rounding: float) -> str:
+    """Whether triangle inequality or positivity is violated by more than a tolerance."""
     low, mid, high = (float(x) for x in moments)
     excess = max(high - mid - low, -low) - tolerance
-    return None if abs(excess) <= rounding else excess > 0.0
+    return "rounding" if abs(excess) <= rounding else "invalid" if excess > 0.0 else "valid"
 
 
-def _drake(document: UrdfDocument) -> Iterator[tuple[str, bool | None]]:
+def drake_test(document: UrdfDocument) -> Iterator[tuple[str, str]]:
+    """Drake's test of tensors."""
     for name, inertial in _inertials(document):
-        moments = _sorted_moments(inertial.tensor, 0.0)
+        moments = _sorted_moments(inertial.tensor)
         rounding = 8.0 * EPS * float(np.abs(inertial.tensor).max())
-        yield name, _beyond(moments, DRAKE_EPS * max(1.0, float(moments.sum()) / 2.0), rounding)
-
-
-def drake_inertia(document: UrdfDocument) -> Iterator[str]:
-    """Impossible beyond Drake's tolerance."""
-    return (name for name, beyond in _drake(document) if beyond)
-
-
-def drake_rounding(document: UrdfDocument) -> Iterator[str]:
-    """At Drake's tolerance."""
-    return (name for name, beyond in _drake(document) if beyond is None)
+        yield name, _outcome(moments, DRAKE_EPS * max(1.0, float(moments.sum()) / 2.0), rounding)
 
 
 def drake_mass(document: UrdfDocument) -> Iterator[str]:
@@ -219,8 +269,8 @@ def drake_mass(document: UrdfDocument) -> Iterator[str]:
             yield name
 
 
-def _gazebo(document: UrdfDocument) -> Iterator[tuple[str, bool | None]]:
-    """What becomes an SDFormat link: neither the link called world, nor one without mass, nor what hangs on that."""
+def gazebo_test(document: UrdfDocument) -> Iterator[tuple[str, str]]:
+    """gz-math's test of what becomes an SDFormat link: not the world, and none without mass or beyond one."""
     dropped = set(gazebo_massless(document))
     for _, name in document.walk():
         joint = document.carried_by.get(name)
@@ -232,24 +282,13 @@ def _gazebo(document: UrdfDocument) -> Iterator[tuple[str, bool | None]]:
             diagonal = _products(merged.inertia) <= GAZEBO_DIAGONAL * largest
             moments = _sorted_moments(merged.inertia, GAZEBO_DIAGONAL * largest)
             rounding = (4.0 * EPS if diagonal and len(merged.members) == 1 else GAZEBO_ROUNDING) * largest
-            yield name, _beyond(moments, GAZEBO_EPS * abs(float(moments.sum())), rounding)
-
-
-def gazebo_inertia(document: UrdfDocument) -> Iterator[str]:
-    """Invalid beyond gz-math's tolerance."""
-    return (name for name, beyond in _gazebo(document) if beyond)
-
-
-def gazebo_rounding(document: UrdfDocument) -> Iterator[str]:
-    """At gz-math's tolerance, or a boundary case that merging has rounded."""
-    return (name for name, beyond in _gazebo(document) if beyond is None)
+            yield name, _outcome(moments, GAZEBO_EPS * abs(float(moments.sum())), rounding)
 
 
 def gazebo_massless(document: UrdfDocument) -> Iterator[str]:
     """Links whose mass, with what is fixed to them, is not above zero."""
-    return (
-        name for name, merged in merged_links(document, spare="world").items() if name != "world" and merged.mass <= 0.0
-    )
+    merged = merged_links(document, spare="world").items()
+    return (name for name, body in merged if name != "world" and body.mass <= 0.0)
 
 
 def gazebo_empty(document: UrdfDocument) -> Iterator[str]:
@@ -259,5 +298,4 @@ def gazebo_empty(document: UrdfDocument) -> Iterator[str]:
 
 def kdl_root(document: UrdfDocument) -> Iterator[str]:
     """The root, where it has an <inertial>."""
-    if document.links[document.root].inertial is not None:
-        yield document.root
+    return (name for name, _ in _inertials(document) if name == document.root)
