@@ -24,6 +24,7 @@ from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.errors import InputError, NumberError
 from rttrr_pin.implementations import Batch
 from rttrr_pin.validation import Sampler
+from support.programs import evaluate_calls
 from support.recursion import recursion
 from support.serial_chains import random_chain
 from support.slow import slow_after
@@ -227,7 +228,7 @@ def test_an_input_that_only_results_without_use_depend_on_is_unread() -> None:
     call_program = arranged(outliner, [x.number for x in (first, second, third)], *fields)
     assert len(call_program.calls) == 2
     assert call_program.unread == (3,)
-    assert call_program.evaluate([np.array(x) for x in (1.0, 2.0, 3.0, 4.0)]) == [2.0, 4.0, 6.0]
+    assert evaluate_calls(call_program, [np.array(x) for x in (1.0, 2.0, 3.0, 4.0)]) == [2.0, 4.0, 6.0]
 
 
 def test_what_comes_from_disk_is_the_same(rttrr: Robot, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -15,13 +15,15 @@ import rttrr_pin
 from rttrr_pin.compile.build import build
 from rttrr_pin.compile.emit import emitter
 from rttrr_pin.compile.expression import Graph, Op
-from rttrr_pin.compile.program import NUMERIC, Array, Field, Program
+from rttrr_pin.compile.program import Field, Program
 from rttrr_pin.compile.summation import order_sums
 from rttrr_pin.compile.trace import trace
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.wrench import LINK_QUANTITIES
 from rttrr_pin.exact import enclose
 from rttrr_pin.exact.enclosures import Enclosure
 from rttrr_pin.validation import Sampler
+from support.programs import NUMERIC, evaluate
 from support.serial_chains import EXAMPLES
 from support.trees import random_tree
 
@@ -107,7 +109,7 @@ def test_small_terms_come_first() -> None:
     made = order_sums(Program(graph, (Field("x", (3,)),), (Field("s", (1,)),), (total,)), fused=True)
     ops = [made.graph.op[x] for x in made.order if made.graph.op[x] not in (Op.CONSTANT, Op.INPUT)]
     assert ops == [Op.ADD, Op.FNMA, Op.FMA]  # z + 1, then - 10 y, then 1000 x
-    assert made.evaluate([2.0, 3.0, 4.0]) == [2000.0 - 30.0 + 4.0 + 1.0]
+    assert evaluate(made, [2.0, 3.0, 4.0]) == [2000.0 - 30.0 + 4.0 + 1.0]
 
 
 @pytest.mark.parametrize("sign", [1.0, -1.0])
@@ -119,7 +121,7 @@ def test_signs_find_their_operation(sign: float, other: float) -> None:
     product = graph.mul(graph.constant(sign), graph.mul(x, y))
     total = graph.add(product, graph.mul(graph.constant(other), z))
     made = order_sums(Program(graph, (Field("x", (3,)),), (Field("s", (1,)),), (total,)), fused=True)
-    assert made.evaluate([2.0, 3.0, 5.0]) == [sign * 6.0 + other * 5.0]
+    assert evaluate(made, [2.0, 3.0, 5.0]) == [sign * 6.0 + other * 5.0]
     ops = [made.graph.op[x] for x in made.order if made.graph.op[x] is not Op.INPUT]
     both = {(1.0, 1.0): Op.FMA, (1.0, -1.0): Op.FMS, (-1.0, 1.0): Op.FNMA, (-1.0, -1.0): Op.FMA}
     assert ops == [both[sign, other]] + [Op.NEG] * (sign == other == -1.0)
@@ -139,7 +141,7 @@ def test_long_sums_need_no_deep_stack() -> None:
     for k in range(1, 5000):
         total = graph.add(total, graph.mul(graph.input(k), graph.input(k - 1)))
     made = order_sums(Program(graph, (Field("x", (5000,)),), (Field("s", (1,)),), (total,)), fused=True)
-    assert made.evaluate([1.0] * 5000) == [5000.0]
+    assert evaluate(made, [1.0] * 5000) == [5000.0]
 
 
 def test_chains_are_nearer_to_the_truth() -> None:
@@ -149,7 +151,7 @@ def test_chains_are_nearer_to_the_truth() -> None:
     truth = enclose(robot.model, states.q, states.v, states.a, (), "read")
     compiled = robot.compile(LINK_QUANTITIES)(states.q, states.v, states.a)
     plain = trace(robot.model, LINK_QUANTITIES, regrouped=False)
-    columns = iter(plain.evaluate([*states.q.T, *states.v.T, *states.a.T]))
+    columns = iter(evaluate(plain, [*states.q.T, *states.v.T, *states.a.T]))
     for name, enclosure in truth.items():
         if name in LINK_QUANTITIES:
             written = np.stack([np.broadcast_to(next(columns), 2000) for _ in range(18)], axis=1).reshape(2000, 6, 3)

@@ -25,6 +25,7 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import FLOAT
 from rttrr_pin.implementations import Batch
 from rttrr_pin.validation import Sampler
+from support.programs import evaluate
 from support.recursion import recursion
 from support.serial_chains import inertial, joint, random_chain
 from support.slow import slow_after
@@ -87,7 +88,7 @@ def recorded(expression: Expression) -> tuple[Graph, int]:
 
 
 def evaluated(graph: Graph, number: int, x: list[Any]) -> Any:
-    return Program(graph, (), (), (number,)).evaluate(x)[0]
+    return evaluate(Program(graph, (), (), (number,)), x)[0]
 
 
 @given(expressions(WHOLE, functions=False), st.lists(st.integers(-3, 3), min_size=INPUTS, max_size=INPUTS))

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from rttrr_pin import Robot
-from rttrr_pin.core.batch import RESULTS, empty_wrenches, fill
+from rttrr_pin.core.batch import RESULTS, split_columns
 from rttrr_pin.core.dynamics import evaluate
 from rttrr_pin.core.inputs import Coordinates, coordinates
 from rttrr_pin.core.payload import Payloads, loads_of
@@ -21,7 +21,7 @@ def recursion(robot: Robot, q: Coordinates, v: Coordinates, a: Coordinates, payl
     batch = np.broadcast_shapes(*(x.shape[:-1] for x in states))
     rows = math.prod(batch)
     arrays = [np.broadcast_to(x, (*batch, x.shape[-1])).reshape(rows, x.shape[-1]) for x in states]
-    out = empty_wrenches(robot.model, rows)
-    fill(out, slice(None), evaluate(robot.model, FLOAT, *arrays, loads_of(robot.model, payload)))
-    parts = {key: getattr(out, key).reshape(*batch, *getattr(out, key).shape[1:]) for key in RESULTS}
-    return LinkWrenches.of(parts, out.links, out.joints)
+    scalars = evaluate(robot.model, FLOAT, *arrays, loads_of(robot.model, payload)).scalars(RESULTS)
+    numbers = np.stack([np.broadcast_to(np.asarray(x, np.float64), rows) for x in scalars], axis=1)
+    parts = {key: x.reshape(*batch, *x.shape[1:]) for key, x in split_columns(robot.model, numbers, RESULTS).items()}
+    return LinkWrenches.of(parts, robot.link_names, robot.model.v_names)

@@ -7,12 +7,10 @@ these are, so that a robot of any size is a table, and the code stays as long as
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 from rttrr_pin.compile.program import Field, Program, Widths, inputs_of
-from rttrr_pin.core.arrays import Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,15 +80,3 @@ class CallProgram(Widths):
         """What one state costs, sines and cosines left out."""
         each = [step.program.operations.total for step in self.steps]
         return sum(each[call.step] for call in self.calls)
-
-    def evaluate(self, columns: Sequence[Array]) -> list[Array | float]:
-        """The outputs for columns of inputs, by NumPy: slow, and the reference for what compiles the schedule."""
-        memory: list[Array | float] = [*columns, *[0.0] * (self.columns - self.width_in)]
-        for call in self.calls:
-            step = self.steps[call.step]
-            given = dict(zip(step.columns, (memory[c] for c in call.columns), strict=True))
-            given |= dict(zip(step.numbers, call.numbers, strict=True))
-            results = step.program.evaluate(given)
-            for column, result in zip(call.results, results, strict=True):
-                memory[column] = result
-        return memory[self.width_in : self.width_in + self.width_out]

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
-import numpy as np
-
 from rttrr_pin.compile.expression import LEAVES, Graph, Op
-from rttrr_pin.core.arrays import Array
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,36 +116,7 @@ class Program(Widths):
         angles = {args[x][0] for x in self.order if op[x] in (Op.SIN, Op.COS)}
         return Operations(ops.count(Op.MUL), ops.count(Op.ADD) + ops.count(Op.SUB), ops.count(Op.NEG), len(angles))
 
-    def evaluate(self, columns: Sequence[Array] | Mapping[int, Array | float]) -> list[Array | float]:
-        """The outputs for columns of inputs, by NumPy: slow, and the reference for what compiles the program."""
-        values: dict[int, Array | float] = {}
-        for x in self.order:
-            op, args = self.graph.op[x], self.graph.args[x]
-            if op is Op.CONSTANT:
-                values[x] = self.graph.value[x]
-            elif op is Op.INPUT:
-                values[x] = columns[args[0]]
-            else:
-                values[x] = NUMERIC[op](*(values[y] for y in args))
-        return [values[x] for x in self.results]
-
 
 def inputs_of(graph: Graph, nodes: Iterable[int]) -> tuple[int, ...]:
     """Places of the inputs that nodes depend on."""
     return tuple(sorted(graph.args[x][0] for x in graph.reachable(nodes) if graph.op[x] is Op.INPUT))
-
-
-NUMERIC: dict[Op, Callable[..., Array]] = {
-    Op.ADD: np.add,
-    Op.SUB: np.subtract,
-    Op.MUL: np.multiply,
-    Op.NEG: np.negative,
-    Op.SIN: np.sin,
-    Op.COS: np.cos,
-    Op.SIGN: np.sign,
-    Op.ABS: np.abs,
-    Op.FMA: lambda x, y, z: x * y + z,
-    Op.FMS: lambda x, y, z: x * y - z,
-    Op.FNMA: lambda x, y, z: z - x * y,
-}
-"""Each operation on numbers; NumPy has no fused ones, so these round twice."""

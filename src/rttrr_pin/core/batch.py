@@ -1,17 +1,15 @@
-"""Batches: one shape for all inputs, blocks that stay in the cache, arrays for the results."""
+"""Batches: one shape for all inputs, slices of them, columns of results by quantity."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, TypeVar
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.core.algebra import Vector
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.dynamics import Result
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import LINK_QUANTITIES, QUANTITIES, LinkWrenches
@@ -22,30 +20,10 @@ Number = TypeVar("Number", bound=np.generic)
 RESULTS = (*QUANTITIES, "tau_joint")
 """The arrays of `LinkWrenches`."""
 
-BLOCK = 4096
-"""States computed at a time: the temporaries of one block stay in the cache, and memory does not grow with N."""
 
-
-def blocks(rows: int, size: int = BLOCK) -> Iterator[slice]:
+def blocks(rows: int, size: int) -> Iterator[slice]:
     """Consecutive slices that cover a batch."""
     return (slice(start, min(start + size, rows)) for start in range(0, rows, size))
-
-
-def empty_wrenches(model: Model, rows: int) -> LinkWrenches:
-    """Arrays for the results of a batch, not yet filled."""
-    spatial = (rows, len(model.links), 3)
-    arrays = {key: np.empty(spatial if key in LINK_QUANTITIES else (rows, model.nv)) for key in RESULTS}
-    return LinkWrenches.of(arrays, model.link_names, model.v_names)
-
-
-def fill(out: LinkWrenches, part: slice, result: Result) -> None:
-    """Write the scalars of one block into the arrays of the batch."""
-    _fill_columns(out.tau[part], result.tau)
-    _fill_columns(out.tau_joint[part], result.tau_joint)
-    for key in LINK_QUANTITIES:
-        vectors_: list[Vector] = getattr(result, key)
-        for i, vector in enumerate(vectors_):
-            _fill_columns(getattr(out, key)[part, i], list(vector))
 
 
 def split_columns(
@@ -55,11 +33,6 @@ def split_columns(
     shapes = [(len(model.links), 3) if key in LINK_QUANTITIES else (model.nv,) for key in quantities]
     parts = np.split(numbers, np.cumsum([math.prod(shape) for shape in shapes])[:-1], axis=1)
     return {key: part.reshape(len(numbers), *shape) for key, part, shape in zip(quantities, parts, shapes, strict=True)}
-
-
-def _fill_columns(out: Array, scalars: Sequence[Any]) -> None:
-    for column, scalar in enumerate(scalars):
-        out[:, column] = scalar
 
 
 def batch_shape(arrays: Sequence[Array], loads: Sequence[Load]) -> tuple[int, ...]:

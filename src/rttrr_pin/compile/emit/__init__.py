@@ -71,6 +71,32 @@ class Emitter(Protocol):
         ...
 
 
+RECORD = 4
+"""Numbers that describe an array (N, width) to compiled code: address, distance in bytes from state to state and from
+column to column, 1 for float32."""
+
+
+def task(run: Callable[[int, int, int], int], executable: object, arrays: Sequence[Array]) -> Task:
+    """Describe arrays once to compiled code, for any number of calls from any thread.
+
+    Args:
+        run: `int64 run(int64 *records, int64 start, int64 stop)`: 1 where a result is not finite, -1 without memory.
+        executable: what holds the code, which must live as long as the task.
+        arrays: inputs, then outputs.
+    """
+    described = [(x.__array_interface__["data"][0], *x.strides, x.dtype.itemsize == 4) for x in arrays]
+    records = np.array(described, dtype=np.int64)
+    address = records.ctypes.data
+
+    def part(start: int, stop: int, alive: object = (executable, records, arrays)) -> bool:
+        code = run(address, start, stop)
+        if code < 0:
+            raise MemoryError("no memory for one block of states")
+        return bool(code)
+
+    return part
+
+
 EMITTERS = ("llvm", "numpy", "c")
 """By preference; the module of the same name here has a function `emitter()`."""
 

@@ -23,7 +23,7 @@ from textwrap import wrap
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.compile.emit import Array, Task
+from rttrr_pin.compile.emit import Array, Task, task
 from rttrr_pin.compile.expression import Op
 from rttrr_pin.compile.program import Field, Program
 from rttrr_pin.errors import InputError
@@ -265,17 +265,8 @@ class CExecutable:
         self._run.restype = ctypes.c_int64
 
     def bind(self, inputs: Sequence[Array], outputs: Sequence[NDArray[np.float64]]) -> Task:
-        """Describe the arrays once, for any number of calls from any thread."""
-        arrays = (*inputs, *outputs)
-        records = np.array(
-            [(x.__array_interface__["data"][0], *x.strides, x.dtype.itemsize == 4) for x in arrays], dtype=np.int64
-        )
-        address = records.ctypes.data
-
-        def task(start: int, stop: int, alive: object = (self, records, arrays)) -> bool:
-            return bool(self._run(address, start, stop))
-
-        return task
+        """See `task`."""
+        return task(self._run, self, (*inputs, *outputs))
 
 
 @cache

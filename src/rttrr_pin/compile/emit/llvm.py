@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rttrr_pin.compile.call_program import CallProgram
-from rttrr_pin.compile.emit import Array, Task
+from rttrr_pin.compile.emit import Array, Task, task
 from rttrr_pin.compile.emit.fastcall import link_numpy, python_function
 from rttrr_pin.compile.emit.llvm_body import body
 from rttrr_pin.compile.emit.llvm_calls import calls
@@ -141,23 +141,8 @@ class LlvmExecutable:
         self.one = python_function(engine.get_function_address("one"))
 
     def bind(self, inputs: Sequence[Array], outputs: Sequence[NDArray[np.float64]]) -> Task:
-        """Describe the arrays once, for any number of calls from any thread."""
-        arrays = (*inputs, *outputs)
-        records = np.array([_record(x) for x in arrays], dtype=np.int64)
-        address = records.ctypes.data
-
-        def task(start: int, stop: int, alive: object = (self, records, arrays)) -> bool:
-            code = self._run(address, start, stop)
-            if code < 0:
-                raise MemoryError("no memory for one block of states")
-            return bool(code)
-
-        return task
-
-
-def _record(x: Array) -> tuple[int, ...]:
-    """What compiled code must know of an array (N, width); see `llvm_driver`."""
-    return (x.__array_interface__["data"][0], *x.strides, x.shape[1], x.dtype.itemsize == 4)
+        """See `task`."""
+        return task(self._run, self, (*inputs, *outputs))
 
 
 @cache

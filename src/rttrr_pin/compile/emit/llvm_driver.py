@@ -3,22 +3,45 @@
     int64 run(int64 *arrays, int64 start, int64 stop)    1 where a result is not finite, -1 without memory
 
 and `one`, which CPython calls, see `llvm_python`. `arrays` has `RECORD` numbers for each input, then each output:
-address, distance in bytes from state to state and from column to column, count of columns, 1 for float32.
+address, distance in bytes from state to state and from column to column, 1 for float32.
+
+States are gathered into columns, so that whatever the layout, every state goes through the same instructions: its bits
+do not depend on its neighbours, on the block or on the thread.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from itertools import groupby
+
 from llvmlite import ir
 
 from rttrr_pin.compile.call_program import CallProgram
-from rttrr_pin.compile.emit.llvm_block import Array, Block, compute
-from rttrr_pin.compile.emit.llvm_columns import F32, F64, I64, PTR, function, number, pack, unpack, unsound
+from rttrr_pin.compile.emit import RECORD
+from rttrr_pin.compile.emit.llvm_columns import (
+    F32,
+    F64,
+    I64,
+    LINE,
+    PTR,
+    function,
+    number,
+    pack,
+    unpack,
+    unsound,
+)
 from rttrr_pin.compile.emit.llvm_python import python_entry
 from rttrr_pin.compile.emit.llvm_vectors import Layout
-from rttrr_pin.compile.program import Program
+from rttrr_pin.compile.program import Field, Program
 
-RECORD = 5
-"""Numbers that describe an array."""
+VOID = ir.VoidType()
+
+STACK = 128 * 1024
+"""Bytes of a block that may lie on the stack, of which threads have little; larger ones are allocated."""
+
+Array = tuple[ir.Value, ir.Value, ir.Value, ir.Value]
+"""A record, loaded."""
 
 
 def driver(program: Program | CallProgram, layout: Layout, between: int) -> str:
@@ -33,31 +56,104 @@ def driver(program: Program | CallProgram, layout: Layout, between: int) -> str:
         The text of a module that calls `body`.
     """
     module = ir.Module(name="driver")
-    block = Block(
-        program=program,
-        layout=layout,
-        between=between,
-        body=ir.Function(module, ir.FunctionType(ir.VoidType(), [PTR, PTR, PTR, I64]), "body"),
-        fill=ir.Function(module, ir.FunctionType(ir.VoidType(), [PTR, I64]), "fill"),
-        pack={kind: pack(module, layout, kind) for kind in (F64, F32)},
-        unpack=unpack(module, layout),
-        unsound=unsound(module, layout),
-    )
-    _run(module, block)
-    python_entry(module, block)
+    run = _Driver(module, program, layout, between).run()
+    python_entry(module, program, layout, run)
     return str(module)
 
 
-def _run(module: ir.Module, block: Block) -> None:
-    """The function int64 run(int64 *arrays, int64 start, int64 stop)."""
-    _, w = function(module, "run", I64, [PTR, I64, I64], internal=False)
-    records, start, stop = w.builder.function.args
-    fields = block.program.inputs + block.program.outputs
-    described = [
-        [w.load(I64, w.offset(records, 8 * (RECORD * k + entry))) for entry in (0, 1, 2, 4)] for k in range(len(fields))
-    ]
-    arrays = [Array(w.builder.inttoptr(base, PTR), *rest) for base, *rest in described]
-    without = w.builder.append_basic_block("without_memory")
-    w.builder.ret(compute(w, block, arrays, (start, stop), without))
-    w.builder.position_at_end(without)
-    w.builder.ret(number(-1))
+class _Driver:
+    """Writes `run`, and the functions that move columns; the program's own are `body` and `fill` (constant outputs)."""
+
+    def __init__(self, module: ir.Module, program: Program | CallProgram, layout: Layout, between: int) -> None:
+        self.program, self.layout, self.between = program, layout, between
+        self.body = ir.Function(module, ir.FunctionType(VOID, [PTR, PTR, PTR, I64]), "body")
+        self.fill = ir.Function(module, ir.FunctionType(VOID, [PTR, I64]), "fill")
+        self.malloc = ir.Function(module, ir.FunctionType(PTR, [I64]), "malloc")
+        self.free = ir.Function(module, ir.FunctionType(VOID, [PTR]), "free")
+        self.pack = {kind: pack(module, layout, kind) for kind in (F64, F32)}
+        self.unpack = unpack(module, layout)
+        self.unsound = unsound(module, layout)
+        self.function, self.w = function(module, "run", I64, [PTR, I64, I64], internal=False)
+
+    def run(self) -> ir.Function:
+        """Compute the states from start to stop, block by block."""
+        w, b, block = self.w, self.w.builder, number(self.layout.block)
+        records, start, stop = self.function.args
+        count = len(self.program.inputs + self.program.outputs)
+        loaded = [
+            [w.load(I64, w.offset(records, 8 * (RECORD * k + entry))) for entry in range(RECORD)] for k in range(count)
+        ]
+        without = b.append_basic_block("without_memory")
+        bad = w.memory(I64)
+        w.store(number(0), bad)
+        with self._scratch(without) as columns:
+            b.call(self.fill, [columns[1], self._padded(w.least(block, b.sub(stop, start)))])
+            with w.loop(stop, self.layout.block, start) as first:
+                m = w.least(block, b.sub(stop, first))
+                arrays = [(w.offset(b.inttoptr(at, PTR), b.mul(first, row)), row, *rest) for at, row, *rest in loaded]
+                w.store(b.or_(w.load(I64, bad), b.zext(self._block(arrays, m, columns), I64)), bad)
+        b.ret(w.load(I64, bad))
+        b.position_at_end(without)
+        b.ret(number(-1))
+        return self.function
+
+    @contextmanager
+    def _scratch(self, without: ir.Block) -> Iterator[list[ir.Value]]:
+        """Memory for columns: of the inputs, the outputs, and what is passed between parts, one behind the other."""
+        w, b = self.w, self.w.builder
+        sizes = [
+            width * self.layout.pitch * 8 for width in (self.program.width_in, self.program.width_out, self.between)
+        ]
+        total = max(sum(sizes), 8)
+        allocated = None
+        if total <= STACK:
+            base = w.memory(F64, total // 8)
+        else:
+            allocated = b.call(self.malloc, [number(total + LINE)])
+            w.require(b.icmp_unsigned("!=", allocated, ir.Constant(PTR, None)), without)
+            base = w.aligned(allocated)
+        yield [w.offset(base, sum(sizes[:k])) for k in range(3)]
+        if allocated is not None:
+            b.call(self.free, [allocated])
+
+    def _block(self, arrays: Sequence[Array], m: ir.Value, columns: Sequence[ir.Value]) -> ir.Value:
+        """Gather m states, run the body, scatter the results; returns whether a result is not finite."""
+        b, program, (inputs, outputs, between) = self.w.builder, self.program, columns
+        count = len(program.inputs)
+        for (base, row, column, single), field, at in self._placed(arrays[:count], program.inputs, inputs):
+            arguments = [base, row, column, number(field.width), at, m]
+            with b.if_else(b.icmp_signed("!=", single, number(0))) as (float32, float64):
+                with float32:
+                    b.call(self.pack[F32], arguments)
+                with float64:
+                    b.call(self.pack[F64], arguments)
+        padded = self._padded(m)
+        b.call(self.body, [inputs, outputs, between, padded])
+        bad = b.call(self.unsound, [outputs, number(program.width_out), padded])
+        for place, length in _runs(program.unread):
+            column = self.w.offset(inputs, place * self.layout.pitch * 8)
+            bad = b.or_(bad, b.call(self.unsound, [column, number(length), padded]))
+        for (base, row, column, _), field, at in self._placed(arrays[count:], program.outputs, outputs):
+            b.call(self.unpack, [base, row, column, number(field.width), at, m])
+        return bad
+
+    def _padded(self, m: ir.Value) -> ir.Value:
+        """So many states that vectors are full."""
+        b = self.w.builder
+        return b.and_(b.add(m, number(self.layout.lanes - 1)), number(-self.layout.lanes))
+
+    def _placed(
+        self, arrays: Sequence[Array], fields: Sequence[Field], base: ir.Value
+    ) -> Iterator[tuple[Array, Field, ir.Value]]:
+        """Each array with the address of its columns."""
+        before = 0
+        for array, field in zip(arrays, fields, strict=True):
+            yield array, field, self.w.offset(base, before * self.layout.pitch * 8)
+            before += field.width
+
+
+def _runs(places: Sequence[int]) -> Iterator[tuple[int, int]]:
+    """Places one behind the other, as the first and their count."""
+    for _, run in groupby(enumerate(places), lambda pair: pair[1] - pair[0]):
+        together = [place for _, place in run]
+        yield together[0], len(together)

@@ -17,10 +17,11 @@ from itertools import combinations, product
 
 from llvmlite import ir
 
-from rttrr_pin.compile.emit import FEW
-from rttrr_pin.compile.emit.llvm_block import Array, Block, compute
+from rttrr_pin.compile.call_program import CallProgram
+from rttrr_pin.compile.emit import FEW, RECORD
 from rttrr_pin.compile.emit.llvm_columns import I1, I32, I64, PTR, Writer, function, number, untyped
-from rttrr_pin.compile.program import Field
+from rttrr_pin.compile.emit.llvm_vectors import Layout
+from rttrr_pin.compile.program import Field, Program
 
 VOID = ir.VoidType()
 
@@ -52,6 +53,9 @@ FLOAT64 = int.from_bytes(b"d\0", "little")
 
 NULL = ir.Constant(PTR, None)
 
+Array = tuple[ir.Value, ir.Value, ir.Value]
+"""Address, and distance in bytes from state to state and from column to column."""
+
 
 @dataclass
 class _One:
@@ -59,14 +63,18 @@ class _One:
 
     Attributes:
         w: writes it.
-        block: the program.
+        program: whose arrays it takes.
+        layout: how blocks lie in memory.
+        run: computes states, see `llvm_driver`.
         api: the functions of the C API.
         none, ndarray: the objects None and numpy.ndarray.
         decline: where it goes if it does not take what was passed.
     """
 
     w: Writer
-    block: Block
+    program: Program | CallProgram
+    layout: Layout
+    run: ir.Function
     api: dict[str, ir.Function]
     none: ir.Value
     ndarray: ir.Value
@@ -74,8 +82,8 @@ class _One:
 
     def write(self) -> None:
         """Compute a state or a small batch and return the outputs, or release all and return None."""
-        w, b, program = self.w, self.w.builder, self.block.program
-        inputs, outputs = program.inputs, program.outputs
+        w, b = self.w, self.w.builder
+        inputs, outputs = self.program.inputs, self.program.outputs
         answer = w.memory(PTR)
         w.store(self.none, answer)
         views = self._zeroed(VIEW_SIZE * len(inputs + outputs))  # to release what was never filled does nothing
@@ -93,8 +101,12 @@ class _One:
             view, reference = w.offset(views, VIEW_SIZE * (len(inputs) + k)), w.offset(owned, 8 * k)
             arrays.append(self._output(items[field.name], view, reference, field, (batched, m)))
         self._require_apart(arrays, m)
-        finite = b.icmp_signed("==", compute(w, self.block, arrays, (number(0), m), self.decline), number(0))
-        w.require(finite, self.decline)
+        records = self._zeroed(8 * RECORD * len(arrays))
+        for k, (base, *distances) in enumerate(arrays):
+            for entry, value in enumerate((b.ptrtoint(base, I64), *distances)):
+                w.store(value, w.offset(records, 8 * (RECORD * k + entry)))
+        bad = b.call(self.run, [records, number(0), m])
+        w.require(b.icmp_signed("==", bad, number(0)), self.decline)
         results = [w.load(PTR, w.offset(owned, 8 * k)) for k in range(len(outputs))]
         if len(results) > 1:
             results = [b.call(self.api["PyTuple_Pack"], [number(len(results)), *results])]
@@ -111,8 +123,8 @@ class _One:
 
     def _items(self) -> dict[str, ir.Value]:
         """The arguments by name; of q, v, a those that are not read must be None."""
-        w, b, program = self.w, self.w.builder, self.block.program
-        read = [field.name for field in program.inputs + program.outputs]
+        w, b = self.w, self.w.builder
+        read = [field.name for field in self.program.inputs + self.program.outputs]
         names = ["q", "v", "a", *(name for name in read if name not in ("q", "v", "a"))]
         _, args, count = b.function.args
         w.require(b.icmp_signed("==", count, number(len(names))), self.decline)
@@ -154,8 +166,8 @@ class _One:
                 b.call(self.api["Py_IncRef"], [item])
                 w.store(item, reference)
                 self._fill(item, view, WRITE)
-                w.store(self._array(view, field, batched, m, output=True).base, data)
-        return Array(w.load(PTR, data), number(8 * field.width), number(8))
+                w.store(self._array(view, field, batched, m, output=True)[0], data)
+        return w.load(PTR, data), number(8 * field.width), number(8)
 
     def _fill(self, item: ir.Value, view: ir.Value, flags: int) -> None:
         """The buffer of an array of float64; of a subclass, masked arrays among them, Python code decides."""
@@ -195,20 +207,20 @@ class _One:
             w.require(b.icmp_signed("==", found, number(length)), self.decline)
         data, row = w.load(PTR, w.offset(view, VIEW["data"])), number(8 * field.width)
         if output:
-            return Array(data, row, number(8))
+            return data, row, number(8)
         column = w.load(I64, w.offset(strides, first))
         in_rows = b.and_(
             b.icmp_signed("==", column, number(8)),
             b.icmp_signed("==", b.select(several, w.load(I64, strides), row), row),
         )
         w.require(b.or_(in_rows, b.not_(several)), self.decline)
-        return Array(data, row, column)
+        return data, row, column
 
     def _require_apart(self, arrays: Sequence[Array], m: ir.Value) -> None:
         """Outputs lie apart, and none over an input that a later block reads; within one block all is read before."""
-        w, b, count = self.w, self.w.builder, len(self.block.program.inputs)
-        ends = [b.ptrtoint(w.offset(array.base, b.mul(m, array.row)), I64) for array in arrays]
-        starts = [b.ptrtoint(array.base, I64) for array in arrays]
+        w, b, count = self.w, self.w.builder, len(self.program.inputs)
+        ends = [b.ptrtoint(w.offset(base, b.mul(m, row)), I64) for base, row, _ in arrays]
+        starts = [b.ptrtoint(base, I64) for base, _, _ in arrays]
 
         def apart(pairs: Iterable[tuple[int, int]]) -> ir.Value:
             clear: ir.Value = ir.Constant(I1, 1)
@@ -219,13 +231,13 @@ class _One:
 
         outputs = range(count, len(arrays))
         w.require(apart(combinations(outputs, 2)), self.decline)
-        in_one_block = b.icmp_signed("<=", m, number(self.block.layout.block))
+        in_one_block = b.icmp_signed("<=", m, number(self.layout.block))
         w.require(b.or_(in_one_block, apart(product(range(count), outputs))), self.decline)
 
 
-def python_entry(module: ir.Module, block: Block) -> None:
-    """The function `one` of a program whose blocks are computed so."""
+def python_entry(module: ir.Module, program: Program | CallProgram, layout: Layout, run: ir.Function) -> None:
+    """The function `one` of a program whose states `run` computes."""
     api = {name: ir.Function(module, kind, name) for name, kind in FUNCTIONS.items()}
     none, ndarray = (untyped(ir.GlobalVariable(module, I64, name)) for name in ("_Py_NoneStruct", "PyArray_Type"))
     one, w = function(module, "one", PTR, [PTR, PTR, I64], internal=False)
-    _One(w, block, api, none, ndarray, one.append_basic_block("finish")).write()
+    _One(w, program, layout, run, api, none, ndarray, one.append_basic_block("finish")).write()
