@@ -15,7 +15,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from rttrr_pin.auditing.printed import PrintedComponent, PrintedTerm, Reading, Split
-from rttrr_pin.auditing.reading.latex import read_latex
+from rttrr_pin.auditing.read import read_latex
 from rttrr_pin.auditing.reading.python import read_python
 from rttrr_pin.auditing.reading.vocabulary import Vocabulary
 from rttrr_pin.derivation.symbols import Factors, factors_of

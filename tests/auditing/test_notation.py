@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from rttrr_pin.auditing import AuditResult, ComponentAudit, Kind, Publication, Verdict, audit, read_publication
-from rttrr_pin.auditing.reading import Vocabulary, read_latex
+from rttrr_pin.auditing.read import read_latex
+from rttrr_pin.auditing.reading.vocabulary import Vocabulary
 from rttrr_pin.derivation.latex import latex_power
 from rttrr_pin.derivation.symbols import Role, Symbol
 

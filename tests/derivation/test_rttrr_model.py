@@ -7,7 +7,7 @@ import re
 import pytest
 
 from rttrr_pin.auditing import read_publication
-from rttrr_pin.auditing.reading import read_latex
+from rttrr_pin.auditing.read import read_latex
 from rttrr_pin.cli import main
 from rttrr_pin.derivation.closed_forms import closed_forms
 from rttrr_pin.derivation.symbols import expression_of

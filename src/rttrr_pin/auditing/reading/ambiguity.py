@@ -6,14 +6,14 @@ lists that the print may mean there, the most literal first.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from math import prod
 
 from rttrr_pin.auditing.reading.grammar import UnreadableError
-from rttrr_pin.auditing.reading.nodes import Atom, Factor, Group
-from rttrr_pin.auditing.reading.vocabulary import FUNCTIONS, Vocabulary
+from rttrr_pin.auditing.reading.nodes import Atom, Factor, Group, Named
+from rttrr_pin.auditing.reading.vocabulary import FUNCTIONS, Vocabulary, angle_of
 
 MOST = 64
 """Readings of one product; more than that are no reading but a riddle."""
@@ -23,8 +23,8 @@ Ways = list[tuple[Factors, str]]
 """Lists of factors, each with the note that says what was decided."""
 
 
-def ways(factors: Factors, vocabulary: Vocabulary) -> Ways:
-    """Every way to read a product's factors, the most literal first.
+def ways(factors: Factors, vocabulary: Vocabulary) -> list[tuple[Iterator[Factor], str]]:
+    """Every way to read a product's factors, symbols by their names, the most literal first; with what was decided.
 
     Raises:
         UnreadableError: there are too many.
@@ -36,9 +36,13 @@ def ways(factors: Factors, vocabulary: Vocabulary) -> Ways:
                 (changed, joined(note, more)) for kept, note in readings for changed, more in rule(kept, i, vocabulary)
             ]
         if len(readings) > MOST:
-            message = f"this can be read in more than {MOST} ways; set it apart with brackets"
-            raise UnreadableError(message, factors[0].start)
-    return readings
+            raise too_many_ways(factors[0].start)
+    return [(_named(kept, vocabulary), note) for kept, note in readings]
+
+
+def too_many_ways(start: int) -> UnreadableError:
+    """The error for a product of more than `MOST` readings."""
+    return UnreadableError(f"this can be read in more than {MOST} ways; set it apart with brackets", start)
 
 
 def joined(*notes: str) -> str:
@@ -71,7 +75,7 @@ def _stray_prefix(factors: Factors, i: int, vocabulary: Vocabulary) -> Ways:
         return [(factors, "")]
     bare = _put(factors, i, replace(factor, prefix=""))
     ignored = f"the superscript {factor.prefix} before {_shown(bare[i])} ignored"
-    j = i - 2 if i > 1 and takes_argument(factors, i - 2, vocabulary) else i - 1
+    j = i - 2 if i > 1 and _takes_argument(factors, i - 2, vocabulary) else i - 1
     before = "".join(_shown(earlier) for earlier in factors[j:i]) if i else ""
     number = factor.prefix.isdecimal() and int(factor.prefix) > 0
     if not i or not number or any(f.exponent is not None or isinstance(f.body, Group) for f in factors[j:i]):
@@ -91,13 +95,13 @@ def _cannot_have_one(factors: Factors, i: int, vocabulary: Vocabulary) -> bool:
     bare = replace(atom, prefix="")
     if atom in vocabulary:
         return False
-    return bare in vocabulary or vocabulary.indexed_angle(bare) is not None or takes_argument(factors, i, vocabulary)
+    return bare in vocabulary or vocabulary.indexed_angle(bare) is not None or _takes_argument(factors, i, vocabulary)
 
 
 def _symbol_or_function(factors: Factors, i: int, vocabulary: Vocabulary) -> Ways:
     """`c q_4` where c is a symbol of the text as well."""
     atom = factors[i].atom
-    if atom is None or atom not in vocabulary or not takes_argument(factors, i, vocabulary):
+    if atom is None or atom not in vocabulary or not _takes_argument(factors, i, vocabulary):
         return [(factors, "")]
     symbol = _put(factors, i, replace(factors[i], symbol=True))
     if isinstance(factors[i + 1].body, Group):
@@ -117,7 +121,7 @@ RULES: tuple[Callable[[Factors, int, Vocabulary], Ways], ...] = (
 """What may be open at one factor; a new kind of doubt is one more function."""
 
 
-def takes_argument(factors: Factors, i: int, vocabulary: Vocabulary) -> bool:
+def _takes_argument(factors: Factors, i: int, vocabulary: Vocabulary) -> bool:
     r"""Whether a factor is a cosine or sine whose angle follows: `c q_4`, `c(q_1 + q_2)`, `\cos q_4`."""
     factor, following = factors[i], factors[i + 1] if i + 1 < len(factors) else None
     atom = factor.body
@@ -126,11 +130,11 @@ def takes_argument(factors: Factors, i: int, vocabulary: Vocabulary) -> bool:
     if following is None or following.operator:
         return False
     if isinstance(following.body, Group):
-        return atom.letters.startswith("\\") or sums_coordinates(following.body, vocabulary) is not None
+        return atom.letters.startswith("\\") or _summed_coordinates(following.body, vocabulary) is not None
     return isinstance(following.body, Atom) and vocabulary.coordinate(following.body) is not None
 
 
-def sums_coordinates(group: Group, vocabulary: Vocabulary) -> list[int] | None:
+def _summed_coordinates(group: Group, vocabulary: Vocabulary) -> list[int] | None:
     """The indices of the coordinates that a bracket adds, each once; None where it is no such sum."""
     indices: list[int] = []
     for product in group.products:
@@ -141,6 +145,45 @@ def sums_coordinates(group: Group, vocabulary: Vocabulary) -> list[int] | None:
             return None
         indices.append(index)
     return indices if not group.divisor else None
+
+
+def _named(factors: Factors, vocabulary: Vocabulary) -> Iterator[Factor]:
+    """The factors with symbols by name; a sine or cosine and its angle are one."""
+    places = iter(range(len(factors)))
+    for i in places:
+        factor = factors[i]
+        if _takes_argument(factors, i, vocabulary):
+            yield _function(factor, factors[next(places)], vocabulary)
+        elif (atom := factor.atom) is not None:
+            factor.check_power()
+            yield replace(factor, body=_symbol(atom, factor.start, vocabulary))
+        else:
+            yield factor
+
+
+def _symbol(atom: Atom, start: int, vocabulary: Vocabulary) -> Named:
+    angle = vocabulary.indexed_angle(atom)
+    if angle is not None:
+        return Named(angle)
+    if atom.letters.startswith(("\\cos", "\\sin")):
+        raise UnreadableError("a sine or cosine is wanted with a coordinate or a sum of coordinates", start)
+    return Named(vocabulary.identifier(atom), "" if atom in vocabulary else str(atom))
+
+
+def _function(function: Factor, argument: Factor, vocabulary: Vocabulary) -> Factor:
+    function.check_power()
+    argument.check_power()
+    note = ""
+    indices: Sequence[int | None] | None = None
+    if isinstance(argument.body, Group):
+        indices = _summed_coordinates(argument.body, vocabulary)
+    elif isinstance(argument.body, Atom):
+        indices = [vocabulary.coordinate(argument.body)]
+        if argument.exponent is not None:
+            note = f"the power {argument.exponent} behind {argument.body} read as that of its sine or cosine"
+    letters = function.body.letters if isinstance(function.body, Atom) else ""
+    name = angle_of(FUNCTIONS[letters], indices, argument.start)
+    return replace(function, body=Named(name, note=note), exponent=function.power * argument.power)
 
 
 def signs(lines: Sequence[Sequence[int]]) -> list[tuple[int, str]]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from functools import cache
 from importlib.resources import files
 from typing import Any, cast
@@ -11,8 +11,15 @@ from lark import Lark, Token, Tree, UnexpectedToken
 
 from rttrr_pin.errors import RttrrError
 
+Node = Token | Tree[Token]
+
 SHOWN = 24
 """Characters of the text that a message shows from the place at fault."""
+
+OPERATORS = ("TIMES", "STAR", "SLASH")
+
+CLOSES = {"RPAR": "LPAR", "RSQB": "LSQB", "RCURLY": "LCURLY"}
+"""Which bracket each closing one ends."""
 
 WORDS = {
     "a symbol": {"LETTER", "GREEK", "ACCENT", "STYLE", "EMPTY", "FUNCTION"},
@@ -64,14 +71,25 @@ def tokens_of(text: str) -> list[Token]:
     return list(parser().lex(text))
 
 
-def start_of(token: Token) -> int:
-    """Where a token starts."""
-    return token.start_pos or 0
+def start_of(node: Node) -> int:
+    """Where a token or a tree starts."""
+    return (node if isinstance(node, Token) else node.meta).start_pos or 0
 
 
-def end_of(token: Token) -> int:
-    """Where a token ends."""
-    return start_of(token) + len(token)
+def end_of(node: Node) -> int:
+    """Where a token or a tree ends."""
+    return start_of(node) + len(node) if isinstance(node, Token) else node.meta.end_pos
+
+
+def divided(tokens: Iterable[Token], mark: str) -> list[list[Token]]:
+    """The tokens between those of a type."""
+    parts: list[list[Token]] = [[]]
+    for token in tokens:
+        if token.type == mark:
+            parts.append([])
+        else:
+            parts[-1].append(token)
+    return parts
 
 
 def parse(tokens: Sequence[Token], end: int) -> Tree[Token]:
@@ -91,20 +109,20 @@ def parse(tokens: Sequence[Token], end: int) -> Tree[Token]:
         try:
             tree = state.feed_token(token)
         except UnexpectedToken as error:
-            raise _explained(token, _accepted(tokens[:i]), end) from error
+            raise _unexpected(token, tokens[:i], end) from error
     return cast("Tree[Token]", tree)
 
 
-def _accepted(tokens: Sequence[Token]) -> set[str]:
-    """The types of token that may follow the beginning of a sum."""
+def _unexpected(token: Token, before: Sequence[Token], end: int) -> UnreadableError:
+    """The error for a token, with what would have been taken.
+
+    The state in which it was refused does not tell: rules may have been reduced there that the token does not allow.
+    """
     state: Any = parser().parse_interactive("", start="sum")
-    for token in tokens:
-        state.feed_token(token)
-    return set(state.accepts())
-
-
-def _explained(token: Token, types: set[str], end: int) -> UnreadableError:
-    wanted = ", ".join(word for word, members in WORDS.items() if members & types) or "a script"
+    for earlier in before:
+        state.feed_token(earlier)
+    accepted = state.accepts()
+    wanted = ", ".join(word for word, types in WORDS.items() if types & accepted) or "a script"
     if token.type == "$END":
         return UnreadableError(f"the text ends here, wanted {wanted}; complete it", end)
     if token.type == "OTHER":

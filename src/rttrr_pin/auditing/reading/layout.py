@@ -6,22 +6,17 @@ of a row, at the start of the next, or at both; a component ends where a matrix 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations, pairwise
 
 from lark import Token
 
-from rttrr_pin.auditing.reading.grammar import SHOWN, UnreadableError, end_of, start_of, tokens_of
+from rttrr_pin.auditing.reading.grammar import CLOSES, OPERATORS, SHOWN, UnreadableError, end_of, start_of, tokens_of
 from rttrr_pin.auditing.reading.rows import Row, rows_of
 
 MOST = 200
 """Splits of one display."""
-
-CLOSES = {"RPAR": "LPAR", "RSQB": "LSQB", "RCURLY": "LCURLY"}
-"""Which bracket each closing one ends."""
-
-OPERATORS = ("TIMES", "STAR", "SLASH")
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,31 +24,39 @@ class Part:
     """What is printed for one component.
 
     Attributes:
-        tokens: of its sum.
+        lines: of its sum.
         start, end: where it stands.
-        fault: why its rows do not make one sum; None where they do.
     """
 
-    tokens: tuple[Token, ...]
+    lines: list[list[Token]]
     start: int
     end: int
-    fault: UnreadableError | None = None
+
+    def tokens(self) -> list[Token]:
+        """The lines as one sum; the grammar takes a break only between signs.
+
+        Raises:
+            UnreadableError: there is no sign between two lines.
+        """
+        tokens: list[Token] = []
+        for line in filter(None, self.lines):
+            if not tokens or tokens[-1].type in CLOSES.values() or line[0].type in CLOSES:
+                tokens += line
+            elif tokens[-1].type == "SIGN" or line[0].type == "SIGN":
+                tokens += [Token("BREAK", "\\\\", end_of(tokens[-1])), *line]
+            elif line[0].type in OPERATORS or tokens[-1].type in OPERATORS:
+                tokens += line[1:] if tokens[-1].type == line[0].type else line
+            else:
+                message = (
+                    "neither does the line before end with a sign nor does this one begin with one; write the sign, "
+                    "or state more components"
+                )
+                raise UnreadableError(message, start_of(line[0]))
+        return tokens
 
 
-@dataclass(frozen=True, slots=True)
-class Layout:
-    """One way to divide a display: its parts, and what had to be decided."""
-
-    parts: tuple[Part, ...]
-    note: str = ""
-
-
-def layouts(text: str, components: int) -> list[Layout]:
-    """The ways to divide a display into components.
-
-    Args:
-        text: of the whole display.
-        components: how many it states.
+def layouts(text: str, components: int) -> list[tuple[list[Part], str]]:
+    """The ways to divide a display into components, each with what had to be decided.
 
     Raises:
         UnreadableError: the display has another number of components, or is no display of equations.
@@ -114,7 +117,7 @@ def _beginning(text: str, row: Row) -> str:
     return " ".join(" ".join(words[:-1] if len(words) > 1 else words).split())  # the last may be cut in two
 
 
-def _layout(rows: Sequence[Row], starts: Sequence[int], note: str) -> Layout:
+def _layout(rows: Sequence[Row], starts: Sequence[int], note: str) -> tuple[list[Part], str]:
     notes = [note] if note else []
     parts: list[Part] = []
     for begin, stop in pairwise((0, *starts, len(rows))):
@@ -124,8 +127,8 @@ def _layout(rows: Sequence[Row], starts: Sequence[int], note: str) -> Layout:
             lines[-1] = lines[-1][:-1]
         alone = _unpaired(lines) if starts else []  # around components that are divided, brackets are the vector's
         notes += [f"the bracket `{token}` of component {len(parts) + 1} has no partner, left out" for token in alone]
-        parts.append(_part(lines, start, end))
-    return Layout(tuple(parts), "; ".join(notes))
+        parts.append(Part(lines, start, end))
+    return parts, "; ".join(notes)
 
 
 def _unpaired(lines: list[list[Token]]) -> list[Token]:
@@ -136,32 +139,12 @@ def _unpaired(lines: list[list[Token]]) -> list[Token]:
         for token in line:
             if token.type in CLOSES.values():
                 waiting.append((token, line))
+            elif token.type in CLOSES and waiting and waiting[-1][0].type == CLOSES[token.type]:
+                waiting.pop()
             elif token.type in CLOSES:
-                if waiting and waiting[-1][0].type == CLOSES[token.type]:
-                    waiting.pop()
-                else:
-                    alone.append((token, line))
-    taken = [(token, line) for token, line in alone if token is line[-1]]
-    taken += [(token, line) for token, line in waiting if token is line[0]]
-    for token, line in taken:
+                alone.append((token, line))
+    unpaired = [(token, line) for token, line in alone if token is line[-1]]
+    unpaired += [(token, line) for token, line in waiting if token is line[0]]
+    for token, line in unpaired:
         line[:] = [other for other in line if other is not token]
-    return [token for token, _ in taken]
-
-
-def _part(lines: Iterable[list[Token]], start: int, end: int) -> Part:
-    """The lines of a component as one sum; the grammar takes a break only between signs."""
-    tokens: list[Token] = []
-    for line in (line for line in lines if line):
-        if not tokens or tokens[-1].type in CLOSES.values() or line[0].type in CLOSES:
-            tokens += line
-        elif tokens[-1].type == "SIGN" or line[0].type == "SIGN":
-            tokens += [Token("BREAK", "\\\\", end_of(tokens[-1])), *line]
-        elif line[0].type in OPERATORS or tokens[-1].type in OPERATORS:
-            tokens += line[1:] if tokens[-1].type == line[0].type else line
-        else:
-            message = (
-                "neither does the line before end with a sign nor does this one begin with one; write the sign, "
-                "or state more components"
-            )
-            return Part((), start, end, UnreadableError(message, start_of(line[0])))
-    return Part(tuple(tokens), start, end)
+    return [token for token, _ in unpaired]

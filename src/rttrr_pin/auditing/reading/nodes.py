@@ -5,6 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from fractions import Fraction
 
+from rttrr_pin.auditing.reading.grammar import UnreadableError
+
+LARGEST_POWER = 400
+"""Of a number: 10^400 is past every quantity."""
+
+ONLY_NUMBERS_DIVIDE = "only numbers may divide; write the quotient out as a product"
+
 
 @dataclass(frozen=True, slots=True)
 class Atom:
@@ -57,21 +64,35 @@ class Group:
 
 
 @dataclass(frozen=True, slots=True)
+class Named:
+    """A symbol, or a sine or cosine with its angle, by name.
+
+    Attributes:
+        name: that the robot's symbols have, or one of its own where nothing declares it.
+        unknown: the spelling where nothing declares it; else empty.
+        note: what had to be decided to read it so.
+    """
+
+    name: str
+    unknown: str = ""
+    note: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class Factor:
     """One factor of a product.
 
     Attributes:
         body: what it is.
-        start, end: where it stands.
+        start: where it stands.
         exponent: the power printed behind it; None where there is none.
         prefix: the superscript that stands before it.
         operator: the operator printed before it: "", "*" or "/".
         symbol: it has been decided that a `c` or `s` is a symbol, not a function.
     """
 
-    body: Atom | Fraction | Group
+    body: Atom | Named | Fraction | Group
     start: int
-    end: int
     exponent: int | None = None
     prefix: str = ""
     operator: str = ""
@@ -81,6 +102,14 @@ class Factor:
     def power(self) -> int:
         """The exponent; 1 where none is printed."""
         return 1 if self.exponent is None else self.exponent
+
+    def check_power(self) -> None:
+        """Raises UnreadableError where it divides, or has a power that no symbol and no bracket can have."""
+        if self.operator == "/":
+            raise UnreadableError(ONLY_NUMBERS_DIVIDE, self.start)
+        if not 0 <= self.power <= LARGEST_POWER:
+            message = f"wanted a power from 0 to {LARGEST_POWER}, got {self.power}; write the power out"
+            raise UnreadableError(message, self.start)
 
     @property
     def atom(self) -> Atom | None:

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import ast
 import warnings
-from collections import Counter
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterator, Mapping
 from decimal import Decimal
 from fractions import Fraction
+from itertools import accumulate
 
-from rttrr_pin.auditing.printed import PrintedComponent, Reading
-from rttrr_pin.auditing.reading.expansion import Bracket, Terms, expanded
+from rttrr_pin.auditing.printed import PrintedComponent
 from rttrr_pin.auditing.reading.grammar import UnreadableError
-from rttrr_pin.auditing.reading.products import LARGEST_POWER
-from rttrr_pin.auditing.reading.vocabulary import angle_name, index_of, unclashing
-from rttrr_pin.derivation.symbols import factors_of
+from rttrr_pin.auditing.reading.multiply import constant, terms_of
+from rttrr_pin.auditing.reading.nodes import LARGEST_POWER, Factor, Group, Named, Product
+from rttrr_pin.auditing.reading.vocabulary import angle_of, index_of, unclashing
 from rttrr_pin.errors import InputError
 
 FUNCTIONS = {"cos": "c", "sin": "s"}
@@ -41,11 +39,9 @@ def read_python(text: str, names: Mapping[str, str]) -> PrintedComponent:
         InputError: a key of `names` is no variable.
     """
     printed = " ".join(text.split())
-    known = {_variable(key): name for key, name in names.items()}
+    source = _Source(text, {_variable(key): name for key, name in names.items()})
     try:
-        tree, places = _parsed(text)
-        expression = _Expression(text, places, known)
-        return PrintedComponent(printed, expression.terms(tree))
+        return PrintedComponent(printed, terms_of(source.products(source.expression()), text, _one_way))
     except UnreadableError as error:
         return PrintedComponent(printed, (), error.placed(text))
     except (RecursionError, MemoryError):
@@ -65,199 +61,141 @@ def _variable(key: str) -> str:
     return ast.unparse(node)
 
 
-@dataclass(frozen=True, slots=True)
-class _Places:
-    """Characters of the text by the lines and bytes that `ast` counts in."""
+def _one_way(factors: tuple[Factor, ...]) -> list[tuple[tuple[Factor, ...], str]]:
+    """Code leaves nothing open."""
+    return [(factors, "")]
 
-    lines: tuple[bytes, ...]
-    starts: tuple[int, ...]
 
-    @classmethod
-    def of(cls, source: str, offset: int) -> _Places:
-        lines = source.splitlines(keepends=True) or [""]
-        starts = [offset]
-        for line in lines[:-1]:
-            starts.append(starts[-1] + len(line))
-        return cls(tuple(line.encode() for line in lines), tuple(starts))
+class _Source:
+    """Reads one text: `ast` counts its places in lines and bytes, messages in characters of the text."""
 
-    def character(self, line: int, column: int) -> int:
+    def __init__(self, text: str, known: Mapping[str, str]) -> None:
+        self.text, self.known = text, known
+        self.offset = len(text) - len(text.lstrip())
+        self.code = text[self.offset :]
+        if "#" not in self.code:  # a comment ends with its line; without one, a sum may be broken anywhere
+            self.code = self.code.replace("\\\n", "  ").replace("\n", " ").replace("\r", " ").replace("\f", " ")
+        lines = self.code.splitlines(keepends=True) or [""]
+        self.starts = list(accumulate(map(len, lines[:-1]), initial=self.offset))
+        self.lines = [line.encode() for line in lines]
+
+    def _character(self, line: int, column: int) -> int:
         return self.starts[line - 1] + len(self.lines[line - 1][:column].decode(errors="ignore"))
 
-    def start(self, node: ast.expr) -> int:
-        return self.character(node.lineno, node.col_offset)
+    def _start(self, node: ast.expr) -> int:
+        return self._character(node.lineno, node.col_offset)
 
-    def end(self, node: ast.expr) -> int:
-        return self.character(node.end_lineno or 1, node.end_col_offset or 0)
+    def _end(self, node: ast.expr) -> int:
+        return self._character(node.end_lineno or 1, node.end_col_offset or 0)
 
+    def _fault(self, message: str, node: ast.expr) -> UnreadableError:
+        return UnreadableError(message, self._start(node))
 
-def _parsed(text: str) -> tuple[ast.expr, _Places]:
-    """The tree of the expression, or of the right-hand side of one assignment."""
-    offset = len(text) - len(text.lstrip())
-    source = text[offset:]
-    if "#" not in source:
-        source = source.replace("\\\n", "  ").replace("\n", " ").replace("\r", " ").replace("\f", " ")
-    places = _Places.of(source, offset)
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            body = ast.parse(source).body
-    except SyntaxError as error:
-        line = min(max(error.lineno or 1, 1), len(places.starts))
-        message = f"Python cannot parse this ({error.msg}); wanted one expression"
-        raise UnreadableError(
-            message, min(places.starts[line - 1] + max((error.offset or 1) - 1, 0), len(text))
-        ) from error
-    except ValueError as error:
-        raise UnreadableError(f"Python cannot parse this ({error}); wanted one expression", 0) from error
-    statement = body[0] if len(body) == 1 else None
-    value = statement.value if isinstance(statement, ast.Expr | ast.Assign | ast.AnnAssign) else None
-    if value is None:
-        raise UnreadableError("wanted one expression, or one assignment of it", offset)
-    return value, places
+    def expression(self) -> ast.expr:
+        """The tree of the expression, or of the right-hand side of one assignment."""
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                body = ast.parse(self.code).body
+        except SyntaxError as error:
+            line = min(max(error.lineno or 1, 1), len(self.starts))
+            start = min(self.starts[line - 1] + max((error.offset or 1) - 1, 0), len(self.text))
+            raise UnreadableError(f"Python cannot parse this ({error.msg}); wanted one expression", start) from error
+        except ValueError as error:
+            raise UnreadableError(f"Python cannot parse this ({error}); wanted one expression", 0) from error
+        statement = body[0] if len(body) == 1 else None
+        value = statement.value if isinstance(statement, ast.Expr | ast.Assign | ast.AnnAssign) else None
+        if value is None:
+            raise UnreadableError("wanted one expression, or one assignment of it", self.offset)
+        return value
 
-
-@dataclass(frozen=True, slots=True)
-class _Expression:
-    """Reads the nodes of one text."""
-
-    text: str
-    places: _Places
-    known: Mapping[str, str]
-
-    def terms(self, node: ast.expr) -> Terms:
-        """The terms of a sum."""
+    def products(self, node: ast.expr) -> tuple[Product, ...]:
+        """The products of a sum. Sums and products nest to the left, so that a long one is no deep recursion."""
         parts: list[tuple[int, ast.expr, int]] = []
         while isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
-            sign = 1 if isinstance(node.op, ast.Add) else -1
-            parts.append((sign, node.right, self._operator(node)))
+            operator = self._end(node.left)
+            while self.text[operator : operator + 1] not in ("+", "-"):  # brackets and blanks may stand before it
+                operator += 1
+            parts.append((1 if isinstance(node.op, ast.Add) else -1, node.right, operator))
             node = node.left
-        parts.append((1, node, self.places.start(node)))
-        return tuple(term for sign, part, start in reversed(parts) for term in self._product(sign, part, start))
+        parts.append((1, node, self._start(node)))
+        return tuple(self._product(*part) for part in reversed(parts))
 
-    def _operator(self, node: ast.BinOp) -> int:
-        """Where the + or - of a sum stands: only brackets and blanks are beside it."""
-        place = self.places.end(node.left)
-        while self.text[place : place + 1] not in ("+", "-"):
-            place += 1
-        return place
-
-    def _product(self, sign: int, node: ast.expr, start: int) -> Terms:
-        product = _Product(self, Fraction(sign))
-        product.multiply(node, 1)
-        end = self.places.end(node)
-        shown = self.text[start:end]
-        while shown.count("(") > shown.count(")") and end < len(self.text):
+    def _product(self, sign: int, node: ast.expr, start: int) -> Product:
+        end = self._end(node)
+        while self.text.count("(", start, end) > self.text.count(")", start, end) and end < len(self.text):
             end += 1
-            shown = self.text[start:end]
-        reading = Reading(
-            product.coefficient, factors_of(product.exponents), unknown=tuple(dict.fromkeys(product.unknown))
-        )
-        return expanded(self.text, start, end, [[reading]], product.brackets)
+        return Product(((sign,),), tuple(self._factors(node, 1)), start, end)
 
-    def fault(self, message: str, node: ast.expr) -> UnreadableError:
-        """An error at a node."""
-        return UnreadableError(message, self.places.start(node))
-
-    def constant(self, node: ast.expr, what: str) -> Fraction:
-        """The value of an expression of numbers."""
-        terms = self.terms(node)
-        if any(term.readings[0].factors for term in terms):
-            raise self.fault(f"only numbers may {what}", node)
-        return sum((term.readings[0].coefficient for term in terms), Fraction(0))
-
-    def index(self, node: ast.expr) -> int | None:
-        """The index of the coordinate that a variable is."""
-        return index_of(self.known.get(ast.unparse(node), "")) if isinstance(node, SymbolNode) else None
-
-    def angle(self, node: ast.Call) -> str:
-        """The name of a sine or cosine."""
-        called = node.func.attr if isinstance(node.func, ast.Attribute) else ast.unparse(node.func)
-        if called not in FUNCTIONS or len(node.args) != 1 or node.keywords:
-            raise self.fault("the only functions are sin and cos of one angle; write it out", node)
-        argument = node.args[0]
-        indices: list[int | None] = []
-        while isinstance(argument, ast.BinOp) and isinstance(argument.op, ast.Add):
-            indices.append(self.index(argument.right))
-            argument = argument.left
-        indices.append(self.index(argument))
-        known = {index for index in indices if index is not None}
-        if len(known) < len(indices):
-            raise self.fault("the angle is wanted as a coordinate or a sum of coordinates", node.args[0])
-        return angle_name(FUNCTIONS[called], known)
-
-
-@dataclass(slots=True)
-class _Product:
-    """A product as far as it has been read."""
-
-    expression: _Expression
-    coefficient: Fraction
-    exponents: Counter[str] = field(default_factory=Counter)
-    unknown: list[str] = field(default_factory=list)
-    brackets: list[Bracket] = field(default_factory=list)
-
-    def multiply(self, node: ast.expr, power: int) -> None:
-        """Takes a node in as a factor, to a power."""
-        factors: list[tuple[ast.expr, bool]] = []
+    def _factors(self, node: ast.expr, power: int) -> Iterator[Factor]:
+        """The factors of a product that stands to a power."""
+        divided: list[tuple[ast.expr, bool]] = []
         while isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult | ast.Div):
-            factors.append((node.right, isinstance(node.op, ast.Div)))
+            divided.append((node.right, isinstance(node.op, ast.Div)))
             node = node.left
-        self._factor(node, power)
-        for factor, divides in reversed(factors):
+        yield from self._factor(node, power)
+        for factor, divides in reversed(divided):
             if divides:
-                self._number(self.expression.constant(factor, "divide"), -power, factor)
+                start, end = self._start(factor), self._end(factor)
+                yield Factor(Group(self.products(factor), start, end), start, power, operator="/")
             else:
-                self.multiply(factor, power)
+                yield from self._factors(factor, power)
 
-    def _factor(self, node: ast.expr, power: int) -> None:
+    def _factor(self, node: ast.expr, power: int) -> Iterator[Factor]:
+        start = self._start(node)
         match node:
             case ast.UnaryOp(op=ast.USub() | ast.UAdd() as op, operand=operand):
-                self.coefficient *= (-1) ** power if isinstance(op, ast.USub) else 1
-                self.multiply(operand, power)
+                yield Factor(Fraction(-1 if isinstance(op, ast.USub) else 1), start, power)
+                yield from self._factors(operand, power)
             case ast.Constant():
-                self._number(self._value(node), power, node)
+                yield Factor(self._number(node), start, power)
             case ast.BinOp(op=ast.Add() | ast.Sub()):
-                places = self.expression.places
-                bracket = Bracket(self.expression.terms(node), places.start(node), places.end(node))
-                self.brackets += [bracket] * power
+                yield Factor(Group(self.products(node), start, self._end(node)), start, power)
             case ast.BinOp(op=ast.Pow(), left=base, right=exponent):
-                self.multiply(base, self._checked(power * self._power(exponent), exponent))
+                yield from self._factors(base, self._power(exponent, power))
             case ast.Call():
-                self.exponents[self.expression.angle(node)] += power
+                yield Factor(Named(self._angle(node)), start, power)
             case ast.Name() | ast.Attribute() | ast.Subscript():
-                self._symbol(ast.unparse(node), power)
+                yield Factor(self._symbol(ast.unparse(node)), start, power)
             case _:
                 message = "this is no sum of products of variables, numbers, sines and cosines; write it out"
-                raise self.expression.fault(message, node)
+                raise self._fault(message, node)
 
-    def _number(self, value: Fraction, power: int, node: ast.expr) -> None:
-        if abs(power) > LARGEST_POWER or (value == 0 and power < 0):
-            raise self.expression.fault(f"this is no number that can be meant: {value} to the power {power}", node)
-        self.coefficient *= value**power
-
-    def _value(self, node: ast.Constant) -> Fraction:
+    def _number(self, node: ast.Constant) -> Fraction:
         if type(node.value) is int:
             return Fraction(node.value)
         if type(node.value) is not float:
-            raise self.expression.fault(f"wanted a real number, got {node.value!r}", node)
-        places = self.expression.places
-        decimal = Decimal(self.expression.text[places.start(node) : places.end(node)])
+            raise self._fault(f"wanted a real number, got {node.value!r}", node)
+        decimal = Decimal(self.text[self._start(node) : self._end(node)])  # as written: 0.1 is a tenth
         if abs(decimal.adjusted()) > LARGEST_POWER:
-            raise self.expression.fault("this is no number that can be meant", node)
+            raise self._fault("this is no number that can be meant", node)
         return Fraction(decimal)
 
-    def _power(self, node: ast.expr) -> int:
-        return self._checked(self.expression.constant(node, "be powers"), node)
-
-    def _checked(self, power: Fraction | int, node: ast.expr) -> int:
+    def _power(self, exponent: ast.expr, outer: int) -> int:
+        terms = terms_of(self.products(exponent), self.text, _one_way)
+        power = outer * constant(terms, "only numbers may be powers", self._start(exponent))
         if power.denominator != 1 or not 0 <= power <= LARGEST_POWER:
-            raise self.expression.fault(f"wanted a whole power from 0 to {LARGEST_POWER}, got {power}", node)
+            raise self._fault(f"wanted a whole power from 0 to {LARGEST_POWER}, got {power}", exponent)
         return int(power)
 
-    def _symbol(self, variable: str, power: int) -> None:
-        name = self.expression.known.get(variable)
-        if name is None:
-            self.unknown.append(variable)
-            plain = "".join(character if character.isalnum() else "_" for character in variable).strip("_") or "_"
-            name = unclashing(plain, set(self.expression.known.values()))
-        self.exponents[name] += power
+    def _angle(self, node: ast.Call) -> str:
+        """The name of a sine or cosine."""
+        called = node.func.attr if isinstance(node.func, ast.Attribute) else ast.unparse(node.func)
+        if called not in FUNCTIONS or len(node.args) != 1 or node.keywords:
+            raise self._fault("the only functions are sin and cos of one angle; write it out", node)
+        argument = node.args[0]
+        indices: list[int | None] = []
+        while isinstance(argument, ast.BinOp) and isinstance(argument.op, ast.Add):
+            indices.append(self._coordinate(argument.right))
+            argument = argument.left
+        indices.append(self._coordinate(argument))
+        return angle_of(FUNCTIONS[called], indices, self._start(node.args[0]))
+
+    def _coordinate(self, node: ast.expr) -> int | None:
+        return index_of(self.known.get(ast.unparse(node), "")) if isinstance(node, SymbolNode) else None
+
+    def _symbol(self, variable: str) -> Named:
+        if variable in self.known:
+            return Named(self.known[variable])
+        plain = "".join(character if character.isalnum() else "_" for character in variable).strip("_") or "_"
+        return Named(unclashing(plain, set(self.known.values())), variable)

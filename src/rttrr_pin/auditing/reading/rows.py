@@ -7,9 +7,8 @@ from dataclasses import dataclass
 
 from lark import Token
 
-from rttrr_pin.auditing.reading.grammar import UnreadableError, parse, start_of
-from rttrr_pin.auditing.reading.nodes import Factor
-from rttrr_pin.auditing.reading.trees import products_of
+from rttrr_pin.auditing.reading.grammar import CLOSES, OPERATORS, UnreadableError, divided, parse, start_of
+from rttrr_pin.auditing.reading.trees import products_of, single_symbol
 
 MATRICES = {"matrix", "bmatrix", "pmatrix", "Bmatrix", "smallmatrix", "array"}
 """Environments of which each row is a component, or each cell of the only row."""
@@ -20,7 +19,7 @@ LINES = {
 }
 """Environments of lines."""
 
-OPENING, CLOSING, STOPS = ("LPAR", "LSQB", "LCURLY"), ("RPAR", "RSQB", "RCURLY"), ("STOP", "COMMA")
+STOPS = ("STOP", "COMMA")
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,12 +37,12 @@ class Row:
     @property
     def open_end(self) -> bool:
         """It ends with a sign or an operator, so that its sum goes on."""
-        return self.tokens[-1].type in ("SIGN", "TIMES", "STAR", "SLASH")
+        return self.tokens[-1].type in ("SIGN", *OPERATORS)
 
     @property
     def signed(self) -> bool:
         """It begins with a sign or an operator, so that it may go on a sum."""
-        return self.tokens[0].type in ("SIGN", "TIMES", "STAR", "SLASH")
+        return self.tokens[0].type in ("SIGN", *OPERATORS)
 
 
 def rows_of(tokens: Sequence[Token]) -> tuple[list[Row], bool]:
@@ -67,13 +66,14 @@ def rows_of(tokens: Sequence[Token]) -> tuple[list[Row], bool]:
 
 def _without_tags(tokens: Sequence[Token]) -> list[Token]:
     """Numbers of equations, printed at the end of a line or of the display, taken off."""
-    kept = list(tokens)
-    last = [token.type for token in kept[-4:]]
+    last = [token.type for token in tokens[-4:]]
     if last[1:] == ["LPAR", "NUMBER", "RPAR"] and last[0] in ("END", *STOPS):
-        kept = kept[:-3]
-    after = [token.type for token in kept[1:]] + ["END"]
+        tokens = tokens[:-3]
+    after = [*(token.type for token in tokens[1:]), "END"]
     ending = ("END", "BREAK", "TAG", *STOPS)
-    return [token for token, follows in zip(kept, after, strict=False) if token.type != "TAG" or follows not in ending]
+    return [
+        token for token, follows in zip(tokens, after, strict=False) if token.type != "TAG" or follows not in ending
+    ]
 
 
 def _without_lines(tokens: Sequence[Token]) -> list[Token]:
@@ -92,7 +92,7 @@ def _without_lines(tokens: Sequence[Token]) -> list[Token]:
 def _lines(tokens: Sequence[Token]) -> list[Row]:
     plain = [token for token in tokens if token.type != "AMPERSAND"]
     lines: list[list[Token]] = []
-    for line in _divided(plain, "BREAK"):
+    for line in divided(plain, "BREAK"):
         if line and line[0].type == "EQUALS" and lines:
             lines[-1] += line
         elif line:
@@ -133,14 +133,9 @@ def _right(left: list[Token], right: list[Token]) -> list[Token]:
 def _is_name(side: Sequence[Token]) -> bool:
     """A side that is one symbol, with a power or without."""
     try:
-        products = products_of(parse(side, 0))
+        return single_symbol(products_of(parse(side, 0))) is not None
     except UnreadableError:
         return False
-    return len(products) == 1 and not products[0].signs and _one_symbol(products[0].factors)
-
-
-def _one_symbol(factors: Sequence[Factor]) -> bool:
-    return len(factors) == 1 and factors[0].atom is not None
 
 
 def _around(before: Sequence[Token], after: Sequence[Token]) -> None:
@@ -148,7 +143,7 @@ def _around(before: Sequence[Token], after: Sequence[Token]) -> None:
     left, right = list(before), [token for token in after if token.type != "TRANSPOSE"]
     while right and right[-1].type in STOPS:
         right.pop()
-    if left and left[-1].type in OPENING and right and right[0].type in CLOSING:
+    if left and left[-1].type in CLOSES.values() and right and right[0].type in CLOSES:
         left, right = left[:-1], right[1:]
     left = [token for token in left if token.type != "AMPERSAND"]
     if left and (left[-1].type != "EQUALS" or not _is_name(left[:-1])):
@@ -160,20 +155,10 @@ def _around(before: Sequence[Token], after: Sequence[Token]) -> None:
 
 
 def _cells(tokens: Sequence[Token]) -> list[Row]:
-    rows = [row for row in _divided(tokens, "BREAK") if row]
-    cells = [_divided(row, "AMPERSAND") for row in rows]
+    rows = [row for row in divided(tokens, "BREAK") if row]
+    cells = [divided(row, "AMPERSAND") for row in rows]
     wide = next((row for row in cells if len(row) > 1), None)
     if wide is not None and len(rows) > 1:
         place = start_of(rows[0][0])
         raise UnreadableError("the matrix has rows and columns, wanted one column or one row", place)
     return [row for cell in (cells[0] if wide is not None else rows) if (row := _row(list(cell))).tokens]
-
-
-def _divided(tokens: Sequence[Token], mark: str) -> list[list[Token]]:
-    parts: list[list[Token]] = [[]]
-    for token in tokens:
-        if token.type == mark:
-            parts.append([])
-        else:
-            parts[-1].append(token)
-    return parts

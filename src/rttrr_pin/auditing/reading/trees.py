@@ -7,22 +7,11 @@ from fractions import Fraction
 
 from lark import Token, Tree
 
-from rttrr_pin.auditing.reading.grammar import UnreadableError, end_of, parse, start_of, tokens_of
+from rttrr_pin.auditing.reading.grammar import Node, UnreadableError, divided, end_of, parse, start_of, tokens_of
 from rttrr_pin.auditing.reading.nodes import Atom, Factor, Group, Product, braced
-
-Node = Token | Tree[Token]
 
 BOLD = {r"\mathbf", r"\boldsymbol", r"\bm", r"\textbf", r"\mathcal", r"\mathsf"}
 """Styles that make another symbol of a letter; the upright ones do not."""
-
-
-def sum_of(text: str) -> tuple[Product, ...]:
-    """The products of a text that is one sum on one line.
-
-    Raises:
-        UnreadableError: it is none.
-    """
-    return products_of(parse(tokens_of(text), len(text)))
 
 
 def atom_of(text: str) -> Atom:
@@ -31,15 +20,20 @@ def atom_of(text: str) -> Atom:
     Raises:
         UnreadableError: it is no symbol, or more than one, or has a sign or a power.
     """
-    products = sum_of(text)
-    factor = products[0].factors[0]
-    single = len(products) == 1 and len(products[0].factors) == 1 and not products[0].signs and factor.exponent is None
-    if not single or factor.atom is None:
+    factor = single_symbol(products_of(parse(tokens_of(text), len(text))))
+    if factor is None or factor.atom is None or factor.exponent is not None:
         raise UnreadableError("this is not one symbol alone; give one letter with its scripts", 0)
     return factor.atom
 
 
-def products_of(tree: Tree[Token]) -> tuple[Product, ...]:
+def single_symbol(products: tuple[Product, ...]) -> Factor | None:
+    """The factor of a sum that is one symbol, with a power or without; None of any other sum."""
+    factor = products[0].factors[0]
+    single = len(products) == 1 and len(products[0].factors) == 1 and not products[0].signs
+    return factor if single and factor.atom is not None else None
+
+
+def products_of(tree: Node) -> tuple[Product, ...]:
     """The products of a sum's tree."""
     products = []
     signs: tuple[tuple[int, ...], ...] = ()
@@ -48,26 +42,17 @@ def products_of(tree: Tree[Token]) -> tuple[Product, ...]:
         if child.data == "signs":
             signs, start = _signs(child)
             continue
-        begin, end = _span(child)
-        products.append(Product(signs, _factors(child), begin if start is None else start, end))
+        products.append(Product(signs, _factors(child), start_of(child) if start is None else start, end_of(child)))
         signs, start = (), None
     return tuple(products)
 
 
 def _signs(tree: Tree[Token]) -> tuple[tuple[tuple[int, ...], ...], int]:
     """The signs line by line, and where the last line's begin."""
-    lines: list[list[Token]] = [[]]
-    for token in _tokens(tree):
-        if token.type == "BREAK":
-            lines.append([])
-        else:
-            lines[-1].append(token)
-    printed = [line for line in lines if line]
-    if not printed:
-        raise UnreadableError(
-            "a line break stands where a sum begins, wanted a sign or a symbol", start_of(_tokens(tree)[0])
-        )
-    return tuple(tuple(1 if token == "+" else -1 for token in line) for line in printed), start_of(printed[-1][0])
+    lines = [line for line in divided(_tokens(tree), "BREAK") if line]
+    if not lines:
+        raise UnreadableError("a line break stands where a sum begins, wanted a sign or a symbol", start_of(tree))
+    return tuple(tuple(1 if token == "+" else -1 for token in line) for line in lines), start_of(lines[-1][0])
 
 
 def _factors(tree: Tree[Token]) -> tuple[Factor, ...]:
@@ -76,58 +61,54 @@ def _factors(tree: Tree[Token]) -> tuple[Factor, ...]:
     for child in _trees(tree):
         if child.data == "operator":
             operator = "/" if _tokens(child)[0].type == "SLASH" else "*"
-            continue
-        factors.append(replace(_factor(child), operator=operator))
-        operator = ""
+        else:
+            factors.append(replace(_factor(child), operator=operator))
+            operator = ""
     return tuple(factors)
 
 
 def _factor(tree: Tree[Token]) -> Factor:
-    start, end = _span(tree)
     if tree.data == "led":
-        led, inner = _trees(tree)
-        return replace(_factor(inner), prefix=_prefix([led]), start=start)
+        script, inner = _trees(tree)
+        return replace(_factor(inner), prefix=_prefix([script]), start=start_of(tree))
     children = list(tree.children)
-    prefix = ""
-    if isinstance(children[0], Tree) and children[0].data == "prefix":
-        prefix = _prefix(_trees(children.pop(0)))
-    factor = replace(_base(children[0]), start=start, end=end)
+    prefix = _prefix(_trees(children.pop(0))) if _rule(children[0]) == "prefix" else ""
+    factor = replace(_base(children[0]), start=start_of(tree))
     for script in children[1:]:
         factor = _scripted(factor, script)
     return replace(factor, prefix=prefix) if prefix else factor
 
 
 def _prefix(scripts: list[Tree[Token]]) -> str:
-    plain = Factor(Atom(""), 0, 0)
+    """Scripts before a symbol: read as those of a symbol without a letter."""
+    empty = Factor(Atom(""), 0)
     for script in scripts:
-        plain = _scripted(plain, script)
-    atom = plain.body if isinstance(plain.body, Atom) else Atom("")
+        empty = _scripted(empty, script)
+    atom = empty.atom or Atom("")
     below = f"_{braced(atom.subscript)}" if atom.subscript else ""
-    return f"{'' if plain.exponent is None else plain.exponent}{atom.superscript}{below}"
+    return f"{'' if empty.exponent is None else empty.exponent}{atom.superscript}{below}"
 
 
 def _base(node: Node) -> Factor:
-    start, end = _span(node)
-    if isinstance(node, Tree) and node.data in ("bracket", "fraction", "braced"):
-        sums = [child for child in _trees(node) if child.data == "sum"]
-        products = products_of(sums[0])
-        if node.data == "braced":
-            return _unbraced(products, start)
-        divisor = products_of(sums[1]) if node.data == "fraction" else ()
-        return Factor(Group(products, *_span(sums[0]), divisor), start, end)
-    if isinstance(node, Token) and node.type == "NUMBER":
-        return Factor(Fraction(str(node)), start, end)
-    if isinstance(node, Token) and node.type == "SHORT_FRACTION":
-        above, below = (character for character in node if character.isdigit())
-        return Factor(Fraction(int(above), int(below)), start, end)
-    return Factor(_symbol(node), start, end)
-
-
-def _unbraced(products: tuple[Product, ...], start: int) -> Factor:
-    """Braces print nothing: they may hold one factor, but no sum that would look like a bracket."""
-    if len(products) > 1 or products[0].signs or len(products[0].factors) > 1:
-        raise UnreadableError("braces print no bracket, so they cannot hold a sum or a product; use ( )", start)
-    return products[0].factors[0]
+    start = start_of(node)
+    match _rule(node):
+        case "bracket":
+            (inside,) = _trees(node)
+            return Factor(Group(products_of(inside), start_of(inside), end_of(inside)), start)
+        case "fraction":
+            above, below = _trees(node)
+            return Factor(Group(products_of(above), start_of(above), end_of(above), products_of(below)), start)
+        case "braced":  # braces print nothing: they may hold one factor, but no sum that would look like a bracket
+            products = products_of(_trees(node)[0])
+            if len(products) > 1 or products[0].signs or len(products[0].factors) > 1:
+                raise UnreadableError("braces print no bracket, so they cannot hold a sum or a product; use ( )", start)
+            return products[0].factors[0]
+        case "NUMBER":
+            return Factor(Fraction(str(node)), start)
+        case "SHORT_FRACTION":
+            numerator, denominator = (int(character) for character in str(node) if character.isdigit())
+            return Factor(Fraction(numerator, denominator), start)
+    return Factor(_symbol(node), start)
 
 
 def _symbol(node: Node) -> Atom:
@@ -136,24 +117,24 @@ def _symbol(node: Node) -> Atom:
         if node.type == "FUNCTION":
             return Atom(r"\cos" if "cos" in node else r"\sin")
         return Atom(str(node))
-    if node.data == "accented":
-        inner = _symbol(node.children[1])
-        return replace(inner, accents=(str(node.children[0]), *inner.accents))
-    if node.data == "styled":
-        inner, style = _symbol(node.children[1]), str(node.children[0])
-        return replace(inner, accents=(style, *inner.accents)) if style in BOLD else inner
-    return _word(node)
+    if node.data == "word":
+        return _word(node)
+    mark, nucleus = str(node.children[0]), _symbol(node.children[1])
+    if node.data == "styled" and mark not in BOLD:
+        return nucleus
+    return replace(nucleus, accents=(mark, *nucleus.accents))
 
 
 def _word(tree: Tree[Token]) -> Atom:
-    word = Factor(Atom(""), *_span(tree))
+    """What an accent or a style has in braces: letters, and the scripts of the last."""
+    word = Factor(Atom(""), start_of(tree))
     for child in tree.children:
-        if isinstance(child, Tree) and child.data == "script":
+        if _rule(child) == "script":
             word = _scripted(word, child)
         elif isinstance(word.body, Atom):
             letter = _symbol(child)
             if word.body.subscript or (word.body.letters and letter.accents):
-                raise UnreadableError("one symbol is wanted in these braces", _span(child)[0])
+                raise UnreadableError("one symbol is wanted in these braces", start_of(child))
             word = replace(word, body=replace(letter, letters=word.body.letters + letter.letters))
     if word.exponent is not None or not isinstance(word.body, Atom) or not word.body.letters:
         raise UnreadableError("a symbol without a power is wanted in these braces", word.start)
@@ -162,32 +143,28 @@ def _word(tree: Tree[Token]) -> Atom:
 
 def _scripted(factor: Factor, script: Node) -> Factor:
     """A factor with one more superscript or subscript."""
-    children = script.children if isinstance(script, Tree) else []
-    place = _span(script)[0]
-    kind = str(children[0].type) if isinstance(children[0], Token) else ""
-    above = kind in ("SUP_DIGIT", "SUP_STAR", "PRIME", "TRANSPOSE", "CARET")
-    mark = spelled(children[-1]).removeprefix("^" if above else "_").strip()
-    if kind == "TRANSPOSE":
-        mark = "T"
-    elif kind == "PRIME":
-        mark = "'"
+    head, last = script.children[0], script.children[-1]
+    below = _rule(head) in ("SUB_DIGIT", "UNDERSCORE")
+    mark = {"TRANSPOSE": "T", "PRIME": "'"}.get(_rule(head)) or spelled(last).removeprefix(
+        "_" if below else "^"
+    ).strip()
     body = factor.body
-    if not above:
+    if below:
         if not isinstance(body, Atom) or body.subscript:
-            raise UnreadableError("a subscript is wanted on a symbol, and only one", place)
+            raise UnreadableError("a subscript is wanted on a symbol, and only one", start_of(script))
         return replace(factor, body=replace(body, subscript=mark))
-    letters = mark.rstrip("0123456789")
-    power = mark[len(letters) :]
-    if power and letters in ("", "-", "+", "*"):
+    sign = mark.rstrip("0123456789")
+    digits = mark[len(sign) :]
+    if digits and sign in ("", "-", "+", "*"):  # q^{*2} is the square of q^*
         if factor.exponent is not None:
-            raise UnreadableError("two powers on one factor; leave one", place)
-        factor = replace(factor, exponent=int(f"{letters if letters in '+-' else ''}{power}"))
-        mark = letters if letters == "*" else ""
-    if mark and not isinstance(body, Atom):
-        raise UnreadableError("a whole number is wanted as the power of a number or bracket", place)
-    if mark and isinstance(body, Atom):
-        factor = replace(factor, body=replace(body, superscript=body.superscript + mark))
-    return factor
+            raise UnreadableError("two powers on one factor; leave one", start_of(script))
+        factor = replace(factor, exponent=int(digits if sign == "*" else mark))
+        mark = sign if sign == "*" else ""
+    if not mark:
+        return factor
+    if not isinstance(body, Atom):
+        raise UnreadableError("a whole number is wanted as the power of a number or bracket", start_of(script))
+    return replace(factor, body=replace(body, superscript=body.superscript + mark))
 
 
 def spelled(node: Node) -> str:
@@ -207,14 +184,13 @@ def spelled(node: Node) -> str:
     return "".join(spelled(child) for child in (inner[1:] if node.data == "styled" else inner))
 
 
-def _span(node: Node) -> tuple[int, int]:
-    if isinstance(node, Token):
-        return start_of(node), end_of(node)
-    return node.meta.start_pos, node.meta.end_pos
+def _rule(node: Node) -> str:
+    """The name of a tree's rule, or of a token's type."""
+    return str(node.type if isinstance(node, Token) else node.data)
 
 
-def _trees(tree: Node) -> list[Tree[Token]]:
-    return [child for child in tree.children if isinstance(child, Tree)] if isinstance(tree, Tree) else []
+def _trees(node: Node) -> list[Tree[Token]]:
+    return [child for child in node.children if isinstance(child, Tree)] if isinstance(node, Tree) else []
 
 
 def _tokens(tree: Tree[Token]) -> list[Token]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 
 from rttrr_pin.auditing.reading.grammar import UnreadableError
 from rttrr_pin.auditing.reading.nodes import Atom
@@ -19,6 +19,18 @@ FUNCTIONS = {"c": "c", "C": "c", r"\cos": "c", "s": "s", "S": "s", r"\sin": "s"}
 def angle_name(function: str, indices: Iterable[int]) -> str:
     """The name of the cosine ("c") or sine ("s") of a coordinate, or of a sum of coordinates, by their indices."""
     return "_".join([function, *(str(index) for index in sorted(indices))])
+
+
+def angle_of(function: str, indices: Sequence[int | None] | None, start: int) -> str:
+    """The name of a cosine or sine whose angle stands at `start`.
+
+    Raises:
+        UnreadableError: the angle is no sum of coordinates, each once.
+    """
+    known = {index for index in indices or () if index is not None}
+    if indices is None or len(known) < len(indices):
+        raise UnreadableError("the angle is wanted as a coordinate or a sum of coordinates", start)
+    return angle_name(function, known)
 
 
 def index_of(name: str) -> int | None:

@@ -1,0 +1,140 @@
+"""From products to terms, of LaTeX and of Python alike: brackets expanded, each term with every way to read it."""
+
+from __future__ import annotations
+
+import itertools
+from collections import Counter
+from collections.abc import Callable, Iterable, Sequence
+from fractions import Fraction
+from math import prod
+
+from rttrr_pin.auditing.printed import PrintedTerm, Reading
+from rttrr_pin.auditing.reading.ambiguity import MOST, joined, signs, too_many_ways
+from rttrr_pin.auditing.reading.grammar import UnreadableError
+from rttrr_pin.auditing.reading.nodes import LARGEST_POWER, ONLY_NUMBERS_DIVIDE, Factor, Group, Named, Product
+from rttrr_pin.derivation.symbols import factors_of
+
+LARGEST = 10_000
+"""Terms that one product may expand to."""
+
+Terms = tuple[PrintedTerm, ...]
+
+Brackets = Sequence[tuple[Group, Terms]]
+"""The sums that a product has as factors, as often as they are factors, with what they expand to."""
+
+Ways = Callable[[tuple[Factor, ...]], Iterable[tuple[Iterable[Factor], str]]]
+"""Gives every way to read the factors of a product, symbols by their names, with what was decided; at least one."""
+
+
+def terms_of(products: Sequence[Product], text: str, ways: Ways) -> Terms:
+    """The terms of a sum, brackets expanded.
+
+    Args:
+        products: of the sum.
+        text: that it stands in.
+        ways: to read the factors of a product.
+
+    Raises:
+        UnreadableError: something in it is no polynomial, or there are too many terms or readings.
+    """
+    return tuple(term for product in products for term in _terms(product, text, ways))
+
+
+def _terms(product: Product, text: str, ways: Ways) -> Terms:
+    if product.enclosed:
+        return terms_of(product.enclosed, text, ways)
+    sign = [Reading(Fraction(value), (), note) for value, note in signs(product.signs)]
+    readings: list[Reading] = []
+    brackets: Brackets = ()
+    for factors, note in ways(product.factors):  # its brackets are the same in each way
+        reading, brackets = _multiplied(factors, note, text, ways)
+        readings.append(reading)
+    return _expanded(product, [sign, readings], brackets, text)
+
+
+def _multiplied(factors: Iterable[Factor], note: str, text: str, ways: Ways) -> tuple[Reading, Brackets]:
+    """The product of what is no bracket, and the brackets."""
+    coefficient = Fraction(1)
+    exponents: Counter[str] = Counter()
+    symbols: list[Named] = []
+    brackets: list[tuple[Group, Terms]] = []
+    for factor in factors:
+        body = factor.body
+        if isinstance(body, Fraction):
+            coefficient *= _power(body, factor, factor.operator == "/")
+        elif isinstance(body, Named):
+            symbols.append(body)
+            exponents[body.name] += factor.power
+        elif isinstance(body, Group):
+            terms = terms_of(body.products, text, ways)
+            if factor.operator == "/":
+                coefficient *= _power(constant(terms, ONLY_NUMBERS_DIVIDE, factor.start), factor, True)
+                continue
+            factor.check_power()
+            if body.divisor:
+                divisor = constant(terms_of(body.divisor, text, ways), ONLY_NUMBERS_DIVIDE, factor.start)
+                coefficient *= _power(divisor, factor, True)
+            brackets += [(body, terms)] * factor.power
+    unknown = tuple(symbol.unknown for symbol in symbols if symbol.unknown)
+    notes = joined(note, *(symbol.note for symbol in symbols))
+    return Reading(coefficient, factors_of(exponents), notes, unknown), brackets
+
+
+def _power(value: Fraction, factor: Factor, divides: bool) -> Fraction:
+    power = -factor.power if divides else factor.power
+    if abs(power) > LARGEST_POWER or (value == 0 and power < 0):
+        raise UnreadableError(f"this is no number that can be meant: {value} to the power {power}", factor.start)
+    return Fraction(value**power)
+
+
+def constant(terms: Terms, message: str, start: int) -> Fraction:
+    """The value of a sum of numbers.
+
+    Args:
+        terms: of the sum.
+        message: of the error where there is a symbol in it.
+        start: where it stands.
+    """
+    if any(len(term.readings) > 1 or term.readings[0].factors for term in terms):
+        raise UnreadableError(message, start)
+    return sum((term.readings[0].coefficient for term in terms), Fraction(0))
+
+
+def _expanded(product: Product, choices: Sequence[Sequence[Reading]], brackets: Brackets, text: str) -> Terms:
+    """One term for each choice of a term from every bracket; `choices` are the readings of what is no bracket."""
+    if prod(len(terms) for _, terms in brackets) > LARGEST:
+        message = f"this expands to more than {LARGEST} terms; print it expanded or as its parts"
+        raise UnreadableError(message, product.start)
+    expanded = []
+    for picked in itertools.product(*(range(len(terms)) for _, terms in brackets)):
+        alternatives = [*choices, *(terms[i].readings for (_, terms), i in zip(brackets, picked, strict=True))]
+        if prod(map(len, alternatives)) > MOST:
+            raise too_many_ways(product.start)
+        readings = dict.fromkeys(map(_product, itertools.product(*alternatives)))
+        expanded.append(PrintedTerm(_shown(product, brackets, picked, text), tuple(readings)))
+    return tuple(expanded)
+
+
+def _product(readings: Sequence[Reading]) -> Reading:
+    """The product of readings; notes and unknown spellings are those of all."""
+    exponents: Counter[str] = Counter()
+    for reading in readings:
+        exponents.update(dict(reading.factors))
+    notes = dict.fromkeys(reading.note for reading in readings)
+    unknown = dict.fromkeys(spelling for reading in readings for spelling in reading.unknown)
+    coefficient = prod((reading.coefficient for reading in readings), start=Fraction(1))
+    return Reading(coefficient, factors_of(exponents), joined(*notes), tuple(unknown))
+
+
+def _shown(product: Product, brackets: Brackets, picked: Sequence[int], text: str) -> str:
+    """The product as printed, on one line, with dots for the terms of each bracket that are not meant."""
+    pieces: dict[tuple[int, int], list[str]] = {}
+    for (group, terms), i in zip(brackets, picked, strict=True):
+        if len(terms) > 1:
+            piece = f"{'... ' if i else ''}{terms[i].text}{' ...' if i + 1 < len(terms) else ''}"
+            pieces.setdefault((group.start, group.end), []).append(piece)
+    shown, here = "", product.start
+    for (start, end), alternatives in sorted(pieces.items()):
+        shown += text[here:start] + ", ".join(alternatives)
+        here = end
+    return " ".join((shown + text[here : product.end]).replace("\\\\", " ").replace("&", " ").split())
