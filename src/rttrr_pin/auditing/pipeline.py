@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
-from rttrr_pin.auditing.classify import Classified, classify
+from rttrr_pin.auditing.classify import corrected_terms, findings, undeclared
 from rttrr_pin.auditing.derived import Derived, derive
 from rttrr_pin.auditing.evidence import Witness
 from rttrr_pin.auditing.match import Matching, match_best
 from rttrr_pin.auditing.printed import Split
-from rttrr_pin.auditing.prove import Proof, prove
+from rttrr_pin.auditing.prove import prove
 from rttrr_pin.auditing.publication import Convention, Equation, Publication
 from rttrr_pin.auditing.read import read
-from rttrr_pin.auditing.results import AuditResult, ComponentAudit, ConventionCheck, Finding, Verdict
+from rttrr_pin.auditing.results import AuditResult, ComponentAudit, ConventionCheck, Verdict
 from rttrr_pin.derivation.symbols import ACCELERATION, FORCE, MOMENT, Dimension
 
 UNITS: Mapping[Dimension, str] = {ACCELERATION: "m/s^2", FORCE: "N", MOMENT: "N m"}
@@ -39,33 +39,17 @@ def audit(publication: Publication, seed: int = 0, progress: Callable[[int], Non
     components: list[ComponentAudit] = []
     for done, equation in enumerate(publication.equations, start=1):
         if equation.names:
-            matched = match_equation(equation, printed[equation], derived, publication.aliases)
-            for name, matching in zip(equation.names, matched.matchings, strict=True):
-                classified = classify(matching, publication.dimension(equation))
-                judged = not classified.undeclared and not matching.component.printed.unparsed
-                proof = prove(classified, name, derived[0], publication, witness) if judged else None
-                components.append(_component(publication, equation, name, matched.note, classified, proof))
+            matchings, note = match_equation(equation, printed[equation], derived, publication.aliases)
+            for name, matching in zip(equation.names, matchings, strict=True):
+                components.append(_component(publication, equation, name, note, matching, derived[0], witness))
         progress(done)
     checks = [_check(convention, publication, printed, derived, components) for convention in publication.conventions]
     return AuditResult(publication, tuple(components), tuple(checks), seed)
 
 
-@dataclass(frozen=True)
-class MatchedEquation:
-    """An equation divided into components in the way that leaves the least to explain.
-
-    Attributes:
-        matchings: of its components.
-        note: what had to be decided to divide it; empty where the text shows the boundaries.
-    """
-
-    matchings: tuple[Matching, ...]
-    note: str
-
-
 def match_equation(
     equation: Equation, splits: Sequence[Split], derived: Sequence[Derived], aliases: Mapping[str, str]
-) -> MatchedEquation:
+) -> tuple[list[Matching], str]:
     """Pair the components of an equation with what is derived, for each way to divide it; the best way is taken.
 
     Args:
@@ -73,6 +57,9 @@ def match_equation(
         splits: the ways to divide its text.
         derived: what is right, in one form or several.
         aliases: symbols that are equal to others.
+
+    Returns:
+        The pairing of each component, and what had to be decided to divide the equation; empty where nothing had to be.
     """
     ways = [
         [match_best(x, name, derived, aliases) for name, x in zip(equation.names, split.components, strict=True)]
@@ -82,44 +69,44 @@ def match_equation(
     note = splits[best].note
     if len(splits) > 1:
         note += f" ({len(splits)} ways were tried; this leaves the fewest errors)"
-    return MatchedEquation(tuple(ways[best]), note)
+    return ways[best], note
 
 
 def _component(
-    publication: Publication, equation: Equation, name: str, note: str, classified: Classified, proof: Proof | None
+    publication: Publication,
+    equation: Equation,
+    name: str,
+    note: str,
+    matching: Matching,
+    derived: Derived,
+    witness: Witness,
 ) -> ComponentAudit:
-    """The result for one component; without a proof it could not be read, or has undeclared symbols."""
-    component = classified.matching.component
+    """The result for one component: no findings where it could not be read, or has symbols that may be right."""
+    component, dimension = matching.component, publication.dimension(equation)
+    to_declare = tuple(undeclared(matching))
+    notes = (pair.reading.note for pair in matching.pairs if pair.reading and not pair.kinds)
     result = ComponentAudit(
         equation=equation.number,
         quantity=name,
         line=equation.line,
         printed_terms=len(component.printed.terms),
         derived_terms=len(component.derived),
-        verdict=Verdict.UNDECLARED if classified.undeclared else Verdict.UNPARSED,
-        unit=UNITS[publication.dimension(equation)],
-        notes=tuple(filter(None, (note, *classified.notes))),
+        verdict=Verdict.UNDECLARED if to_declare else Verdict.UNPARSED,
+        unit=UNITS[dimension],
+        notes=tuple(filter(None, (note, *notes))),
         unparsed=component.printed.unparsed,
-        undeclared=classified.undeclared,
+        undeclared=to_declare,
     )
-    if proof is None:
+    if to_declare or component.printed.unparsed:
         return result
-    findings = tuple(
-        Finding(
-            id=f"{name}.{k}",
-            kind=error.kind,
-            printed=error.printed,
-            derived=None if error.derived is None else proof.writing([error.derived])[0],
-            dimension_ok=error.dimension_ok,
-            note=error.note,
-        )
-        for k, error in enumerate(classified.errors, start=1)
-    )
-    changed = [changed for _, changed in classified.corrected] or [True]  # a sum of nothing is printed as 0
+    corrected = corrected_terms(matching)
+    proof = prove(matching, [term for term, _ in corrected], name, derived, publication, witness)
+    errors = findings(matching, name, dimension, proof.write)
+    changed = [changed for _, changed in corrected] or [True]  # a sum of nothing is printed as 0
     return replace(
         result,
-        verdict=Verdict.DIFFERS if findings else Verdict.MATCH,
-        findings=findings,
+        verdict=Verdict.DIFFERS if errors else Verdict.MATCH,
+        findings=errors,
         corrected=tuple(zip(proof.corrected, changed, strict=True)),
         proven=proof.proven,
         evidence=proof.evidence,
@@ -143,12 +130,11 @@ def _check(
         if any(derived[0].expressions[name] != flipped.expressions[name] for name in equation.names)
     ]
     numbers = {equation.number for equation in touched}
-    otherwise = [
+    as_read = sum(len(x.findings) for x in components if x.equation in numbers)
+    otherwise = sum(
         len(pair.kinds)
         for equation in touched
-        for matching in match_equation(equation, printed[equation], [flipped], publication.aliases).matchings
+        for matching in match_equation(equation, printed[equation], [flipped], publication.aliases)[0]
         for pair in matching.pairs
-    ]
-    return ConventionCheck(
-        convention, sum(len(x.findings) for x in components if x.equation in numbers), sum(otherwise)
     )
+    return ConventionCheck(convention, as_read, otherwise)

@@ -69,8 +69,8 @@ def _factors(tree: Tree[Token]) -> tuple[Factor, ...]:
 
 def _factor(tree: Tree[Token]) -> Factor:
     if tree.data == "led":
-        script, inner = _trees(tree)
-        return replace(_factor(inner), prefix=_prefix([script]), start=start_of(tree))
+        *scripts, inner = _trees(tree)
+        return replace(_factor(inner), prefix=_prefix(scripts), start=start_of(tree))
     children = list(tree.children)
     prefix = _prefix(_trees(children.pop(0))) if _rule(children[0]) == "prefix" else ""
     factor = replace(_base(children[0]), start=start_of(tree))
@@ -143,11 +143,11 @@ def _word(tree: Tree[Token]) -> Atom:
 
 def _scripted(factor: Factor, script: Node) -> Factor:
     """A factor with one more superscript or subscript."""
-    head, last = script.children[0], script.children[-1]
-    below = _rule(head) in ("SUB_DIGIT", "UNDERSCORE")
-    mark = {"TRANSPOSE": "T", "PRIME": "'"}.get(_rule(head)) or spelled(last).removeprefix(
-        "_" if below else "^"
-    ).strip()
+    children = script.children if isinstance(script, Tree) else [script]
+    kind = _rule(children[0])
+    below = kind in ("SUB_DIGIT", "UNDERSCORE")
+    mark = {"TRANSPOSE": "T", "PRIME": "'"}.get(kind) or spelled(children[-1])
+    mark = mark.removeprefix("_" if below else "^").strip()
     body = factor.body
     if below:
         if not isinstance(body, Atom) or body.subscript:
