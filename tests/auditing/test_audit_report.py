@@ -12,14 +12,13 @@ import pytest
 from rich.console import Console
 
 from rttrr_pin.auditing import AuditResult, ComponentAudit, Finding, Kind, Publication, Verdict, read_publication
-from rttrr_pin.auditing.errata import WRITERS, errata
-from rttrr_pin.auditing.errata.content import left_side, prose
-from rttrr_pin.auditing.errata.html import mathml
-from rttrr_pin.auditing.errata.sheet import Code, Formula, Words
-from rttrr_pin.auditing.errata.typeset import settable
+from rttrr_pin.auditing.errata import WRITERS, errata, left_side, prose
 from rttrr_pin.auditing.evidence import Evidence
 from rttrr_pin.auditing.report import show_audit, show_equations
 from rttrr_pin.auditing.wording import dimension_summary, evidence_words, verdict_words
+from rttrr_pin.derivation.writers.document import Code, Formula
+from rttrr_pin.derivation.writers.html import mathml
+from rttrr_pin.derivation.writers.typeset import settable
 from rttrr_pin.reporting.files import as_json
 from support.pdflatex import compiled
 
@@ -325,10 +324,7 @@ def test_what_cannot_be_set_is_code(tex: str) -> None:
 
 def test_prose_sets_formulas_and_names_apart() -> None:
     line = prose(r"read as `{}^5r_{C_{5x}}`, the 5 before it; J_xy of {5}, `- \right]` is link's")
-    assert [type(part) for part in line] == [Words, Formula, Words, Code, Words, Code, Words]
+    assert [type(part) for part in line] == [str, Formula, str, Code, str, Code, str]
     assert line[1] == Formula("{}^5r_{C_{5x}}") and line[3] == Code("J_xy") and line[5] == Code(r"- \right]")
-    assert prose(r"so \dot{q}_1, x") == (Words("so "), Formula(r"\dot{q}_1"), Words(", x"))
-    assert (
-        "".join(part.text for part in line if isinstance(part, Words))
-        == "read as , the 5 before it;  of {5},  is link's"
-    )
+    assert prose(r"so \dot{q}_1, x") == ("so ", Formula(r"\dot{q}_1"), ", x")
+    assert "".join(part for part in line if isinstance(part, str)) == "read as , the 5 before it;  of {5},  is link's"

@@ -29,15 +29,14 @@ from rttrr_pin.derivation import forms
 from rttrr_pin.derivation.closed_forms import closed_forms
 from rttrr_pin.derivation.collect import Presenter
 from rttrr_pin.derivation.latex import latex_number
-from rttrr_pin.derivation.model_terms import model_terms, names
 from rttrr_pin.derivation.motion import angles
 from rttrr_pin.derivation.ring import Ring, exact
 from rttrr_pin.derivation.symbols import Expression, Factors, Role, dimension_of
 from rttrr_pin.derivation.tree import Power, Product, Sum
-from rttrr_pin.derivation.writers import WRITERS, mathematics
+from rttrr_pin.derivation.writers import WRITERS
+from rttrr_pin.derivation.writers.content import ROOM, width
 from rttrr_pin.derivation.writers.printing import Notation
 from rttrr_pin.derivation.writers.printing import lines as lines_of
-from rttrr_pin.derivation.writers.printing import text as text_of
 from rttrr_pin.validation import Sampler
 from support import closed_latex
 from support.implementations import evaluated
@@ -249,7 +248,7 @@ def test_lines_fit_the_page_and_braces_balance(case: tuple[str, str, str]) -> No
     text = written(case, "latex")
     assert text.count("{") - text.count(r"\{") == text.count("}") - text.count(r"\}")
     for line in closed_latex.printed_lines(text):
-        assert mathematics.width(line.replace("&", "")) <= mathematics.ROOM, line
+        assert width(line.replace("&", "")) <= ROOM, line
     for _, side in closed_latex.equations(text):
         assert side.count("(") == side.count(")")
 
@@ -311,7 +310,7 @@ def test_a_line_ends_where_few_brackets_are_open() -> None:
     long, short = (Sum(tuple(one(letter) for letter in letters)) for letters in ("bcdef", "hijk"))
     expression = Sum((one("g", Sum((one("M", long), one("N", short)))),))
     whole = "g*(M*(b + c + d + e + f) + N*(h + i + j + k))"
-    assert text_of(expression, notation) == whole
+    assert lines_of(expression, notation, len(whole)) == [whole]
     assert lines_of(expression, notation, 34) == ["g*(M*(b + c + d + e + f)", "  + N*(h + i + j + k))"]
     for room in range(10, 50):
         found = lines_of(expression, notation, room)
@@ -334,13 +333,15 @@ def test_the_equation_of_motion_is_the_sum_of_its_parts() -> None:
     effects = {joint: JointEffects(0.25, 0.5, 2.0) for joint in robot("rttrr").joint_names}
     model = robot("rttrr").with_joint_effects(effects).model
     closed = closed_forms(symbolic.SymbolicRobot(model, symbolic.default_symbols(model, 5), 5))
-    ring, parts = closed.robot.ring, model_terms(closed)
+    ring = closed.robot.ring
+    loads = ring.names(Role.PAYLOAD)
     for i, tau in enumerate(closed.tau):
-        moved = [(parts.M[i][j] * closed.robot.a[j] + parts.C[i][j] * closed.robot.v[j]) for j in range(model.nv)]
-        assert tau == sum(moved, parts.g[i] + parts.payload[i] + parts.friction[i])
-        assert parts.friction[i] == ring[f"v_{i + 1}"] / 2 + 2 * ring[f"sign_{i + 1}"]
+        moved = [(closed.M[i][j] * closed.robot.a[j] + closed.C[i][j] * closed.robot.v[j]) for j in range(model.nv)]
+        payload = sum((ring.derivative(tau, load) * ring[load] for load in loads), ring.lift(0))
+        friction = ring[f"v_{i + 1}"] / 2 + 2 * ring[f"sign_{i + 1}"]
+        assert tau == sum(moved, closed.g[i] + payload + friction)
         assert not any(
-            ring.symbols[x].role in (Role.RATE, Role.ACCELERATION, Role.PAYLOAD) for x in used(ring, parts.g[i])
+            ring.symbols[x].role in (Role.RATE, Role.ACCELERATION, Role.PAYLOAD) for x in used(ring, closed.g[i])
         )
 
 
@@ -363,18 +364,18 @@ def test_the_rate_of_M_less_twice_C_is_skew_symmetric(name: str) -> None:
     """Exactly: C is made of Christoffel symbols."""
     model = branched() if name == "branched" else robot(name).model
     closed = closed_forms(symbolic.SymbolicRobot(model, symbolic.default_symbols(model)))
-    ring, parts = closed.robot.ring, model_terms(closed)
-    rates = [[rate(closed.robot, entry) for entry in row] for row in parts.M]
+    ring, M, C = closed.robot.ring, closed.M, closed.C
+    rates = [[rate(closed.robot, entry) for entry in row] for row in M]
     for i, j in itertools.combinations_with_replacement(range(model.nv), 2):
-        assert parts.M[i][j] == parts.M[j][i]
-        symmetric = rates[i][j] * 2 - parts.C[i][j] * 2 - parts.C[j][i] * 2
+        assert M[i][j] == M[j][i]
+        symmetric = rates[i][j] * 2 - C[i][j] * 2 - C[j][i] * 2
         assert ring.reduced(symmetric) == 0
 
 
 def rate(at: symbolic.SymbolicRobot, x: Any) -> Any:
     """The time derivative of a polynomial in coordinates, sines and cosines."""
     ring = at.ring
-    total = sum((ring.derivative(x, q) * ring["v" + q[1:]] for q in names(ring, Role.COORDINATE)), ring.lift(0))
+    total = sum((ring.derivative(x, q) * ring["v" + q[1:]] for q in ring.names(Role.COORDINATE)), ring.lift(0))
     for angle in angles(at.model):
         s, c = ring[f"s_{angle.suffix}"], ring[f"c_{angle.suffix}"]
         by_angle = ring.derivative(x, str(s)) * c - ring.derivative(x, str(c)) * s
@@ -577,8 +578,8 @@ def test_the_estimated_width_is_not_below_the_true_one() -> None:
         r"\mathrm{sgn}(\dot{q}_{12})": 3.46,
         r"1.5 \cdot 10^{-7} \cdot s^2q_4": 6.50,
     }
-    for latex, width in true.items():
-        assert mathematics.width(latex) >= width
+    for latex, measured in true.items():
+        assert width(latex) >= measured
 
 
 # The page and the command
@@ -608,7 +609,7 @@ UNUSABLE = {
     "quantity": (["derive", "--quantity", "taus"], "no quantity is called 'taus': did you mean tau"),
     "form": (["derive", "--form", "short"], "no form is called 'short': there are auto, expanded, stepwise"),
     "payload": (["derive", "--payload-link", "hand"], "no link is called 'hand'"),
-    "twice": (["derive", "--latex", "-", "--c", "-"], "--latex and --c both go to standard output"),
+    "twice": (["derive", "--latex", "-", "--c", "-"], "--latex and --c both go to stdout"),
     "folder": (["derive", "--python", "no/such/folder/x.py"], "cannot be written"),
     "robot": (["derive", "rttr"], "did you mean"),
 }

@@ -1,9 +1,12 @@
-"""The recursion run on symbols: the closed forms of v_dot_C, F, N, f, n and tau."""
+"""The recursion run on symbols: the closed forms of v_dot_C, F, N, f, n and tau, and of M, C and g in tau."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
+
+from flint import fmpq
 
 from rttrr_pin.core.algebra import ZERO, Matrix, Vector
 from rttrr_pin.core.dynamics import Result, dynamics
@@ -12,11 +15,24 @@ from rttrr_pin.core.newton_euler import Keep
 from rttrr_pin.core.scalars import Arithmetic
 from rttrr_pin.derivation.ring import Polynomial, exact
 from rttrr_pin.derivation.symbolic_robot import SymbolicRobot
+from rttrr_pin.derivation.symbols import Role
+
+HALF = fmpq(1, 2)
 
 
 @dataclass(frozen=True)
 class ClosedForms:
-    """The five quantities, and the accelerations of the centres of mass, as polynomials.
+    """Quantities of a robot as polynomials, reduced modulo c^2 + s^2 = 1.
+
+    M, C and g are tau taken apart: it is linear in the accelerations and of second degree in the rates, and
+
+        tau = M(q) a + C(q, v) v + g(q) + payload + friction of the joints
+        M_ij = d tau_i / d a_j
+        C_ij = 1/2 sum over k of d^2 tau_i / d v_j d v_k v_k
+
+    The second derivatives are twice the Christoffel symbols c_ijk of the first kind, which are symmetric in j and k. So
+    dM/dt - 2 C is skew-symmetric where v is the time derivative of q; of planar and floating joints it is not, and only
+    C v has a meaning.
 
     Attributes:
         robot: whose they are.
@@ -32,6 +48,35 @@ class ClosedForms:
     f: list[Vector]
     n: list[Vector]
     tau: list[Polynomial]
+
+    @cached_property
+    def M(self) -> list[list[Polynomial]]:
+        """Mass matrix, armature included, (nv, nv)."""
+        ring = self.robot.ring
+        accelerations = ring.names(Role.ACCELERATION)
+        return [[ring.derivative(x, name) for name in accelerations] for x in self.tau]
+
+    @cached_property
+    def C(self) -> list[list[Polynomial]]:
+        """Coriolis and centrifugal matrix, (nv, nv): C v is what the rates take."""
+        ring = self.robot.ring
+        rates = ring.names(Role.RATE)
+
+        def entry(tau: Polynomial, rate: str) -> Polynomial:
+            by_rate = ring.derivative(tau, rate)
+            return sum((ring.derivative(by_rate, other) * ring[other] * HALF for other in rates), start=ring.lift(0))
+
+        return [[entry(x, rate) for rate in rates] for x in self.tau]
+
+    @cached_property
+    def g(self) -> list[Polynomial]:
+        """What holds the robot still, (nv,)."""
+        moving: dict[str | int, int] = dict.fromkeys(self.robot.ring.names(*MOVING), 0)
+        return [x.subs(moving) for x in self.tau]
+
+
+MOVING = (Role.RATE, Role.ACCELERATION, Role.PAYLOAD, Role.SIGN)
+"""What is 0 while a robot is held still, with nothing at its tool."""
 
 
 class TooLongError(Exception):

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import ast
-from collections.abc import Collection
+import operator
+from collections.abc import Callable, Collection, Mapping
 from decimal import Decimal
 from fractions import Fraction
 
-from rttrr_pin.derivation.symbols import Expression, factors_of
+from rttrr_pin.derivation.ring import Polynomial, Ring
+from rttrr_pin.derivation.symbols import Expression, Role, Symbol
 from rttrr_pin.errors import InputError
 
 MOST_TERMS, LARGEST_POWER = 1000, 40
@@ -24,63 +26,51 @@ def read_expression(text: str, names: Collection[str]) -> Expression:
     Raises:
         InputError: the text is no such expression, or has a name that is no symbol.
     """
+    ring = Ring(Symbol(name, name, Role.UNKNOWN) for name in names)
     try:
-        return _read(ast.parse(text.strip(), mode="eval").body, text.strip(), names)
+        return ring.terms(_read(ast.parse(text.strip(), mode="eval").body, text.strip(), ring))
     except InputError:  # a ValueError, and says more
         raise
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         raise InputError(f"{text!r} cannot be read: expected a sum of products of symbols and numbers") from error
 
 
-def _read(node: ast.expr, text: str, names: Collection[str]) -> Expression:
+def _read(node: ast.expr, text: str, ring: Ring) -> Polynomial:
     match node:
         case ast.Name(id=name):
-            if name not in names:
+            if name not in ring:
                 raise InputError(f"{text!r} has {name!r}, which is no symbol: declare it in [[symbol]]")
-            return {((name, 1),): Fraction(1)}
+            return ring[name]
         case ast.Constant(value=int() | float()) if not isinstance(node.value, bool):
-            number = Fraction(Decimal(ast.get_source_segment(text, node) or ""))
-            return {(): number} if number else {}
+            return ring.lift(Fraction(Decimal(ast.get_source_segment(text, node) or "")))
         case ast.UnaryOp(op=ast.USub() | ast.UAdd() as sign, operand=operand):
-            return _scaled(_read(operand, text, names), Fraction(-1 if isinstance(sign, ast.USub) else 1))
-        case ast.BinOp(op=ast.Add() | ast.Sub() as sign, left=left, right=right):
-            other = _scaled(_read(right, text, names), Fraction(-1 if isinstance(sign, ast.Sub) else 1))
-            return _sum(_read(left, text, names), other)
-        case ast.BinOp(op=ast.Mult(), left=left, right=right):
-            return _product(_read(left, text, names), _read(right, text, names))
-        case ast.BinOp(op=ast.Div(), left=left, right=right):
-            return _scaled(_read(left, text, names), 1 / _number(_read(right, text, names)))
+            x = _read(operand, text, ring)
+            return -x if isinstance(sign, ast.USub) else x
+        case ast.BinOp(op=sign, left=left, right=right) if type(sign) in OPERATIONS:
+            return OPERATIONS[type(sign)](_read(left, text, ring), _read(right, text, ring))
         case ast.BinOp(op=ast.Pow(), left=left, right=ast.Constant(value=int(power))) if 0 <= power <= LARGEST_POWER:
-            total: Expression = {(): Fraction(1)}
+            base, total = _read(left, text, ring), ring.lift(1)
             for _ in range(power):
-                total = _product(total, _read(left, text, names))
+                total = _product(total, base)
             return total
     raise ValueError("this is no sum of products")
 
 
-def _number(x: Expression) -> Fraction:
-    if set(x) != {()}:
-        raise ValueError("only numbers other than 0 may divide")
-    return x[()]
-
-
-def _scaled(x: Expression, by: Fraction) -> Expression:
-    return {factors: by * coefficient for factors, coefficient in x.items()}
-
-
-def _sum(x: Expression, y: Expression) -> Expression:
-    total = {factors: x.get(factors, Fraction(0)) + y.get(factors, Fraction(0)) for factors in (*x, *y)}
-    return {factors: coefficient for factors, coefficient in total.items() if coefficient}
-
-
-def _product(x: Expression, y: Expression) -> Expression:
+def _product(x: Polynomial, y: Polynomial) -> Polynomial:
     if len(x) * len(y) > MOST_TERMS:
         raise ValueError("too many terms")
-    total: Expression = {}
-    for one, a in x.items():
-        for other, b in y.items():
-            powers = dict(one)
-            for name, power in other:
-                powers[name] = powers.get(name, 0) + power
-            total = _sum(total, {factors_of(powers): a * b})
-    return total
+    return x * y
+
+
+def _quotient(x: Polynomial, y: Polynomial) -> Polynomial:
+    if not y or not y.is_constant():
+        raise ValueError("only numbers other than 0 may divide")
+    return x / y
+
+
+OPERATIONS: Mapping[type[ast.operator], Callable[[Polynomial, Polynomial], Polynomial]] = {
+    ast.Add: operator.add,
+    ast.Sub: operator.sub,
+    ast.Mult: _product,
+    ast.Div: _quotient,
+}

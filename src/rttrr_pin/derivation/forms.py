@@ -10,7 +10,6 @@ from typing import Any, Protocol
 from rttrr_pin.core.algebra import Scalar, Vector
 from rttrr_pin.core.model import Model
 from rttrr_pin.derivation.closed_forms import TooLongError, closed_forms
-from rttrr_pin.derivation.model_terms import model_terms
 from rttrr_pin.derivation.quantities import DEFAULT, QUANTITIES, Extent, Index, indices
 from rttrr_pin.derivation.ring import Ring
 from rttrr_pin.derivation.stepwise import Step, Stepwise, needed
@@ -173,10 +172,9 @@ def only_leaf(model: Model) -> int | None:
 
 def _expanded(robot: SymbolicRobot, quantities: Sequence[str], most_terms: int | None) -> Derivation:
     ring, forms = robot.ring, closed_forms(robot, most_terms)
-    parts = model_terms(forms) if {"M", "C", "g"} & set(quantities) else None
     entries: dict[str, Sequence[Scalar]] = {}
     for name in quantities:
-        rows = getattr(forms if name in vars(forms) else parts, name)
+        rows = getattr(forms, name)
         entries[name] = rows if QUANTITIES[name].extent is Extent.JOINTS else [x for row in rows for x in row]
     derived = {name: _derived(robot.model, name, map(ring.terms, scalars)) for name, scalars in entries.items()}
     result = Derivation(robot, "expanded", "as asked for", (), derived)

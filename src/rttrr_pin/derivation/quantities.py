@@ -50,6 +50,11 @@ class Quantity:
     unit: str
     latex: Callable[[Index], str]
 
+    @property
+    def sentence(self) -> str:
+        """The meaning with a capital letter."""
+        return self.meaning[0].upper() + self.meaning[1:]
+
 
 def indices(shape: tuple[int, ...]) -> Iterator[Index]:
     """The indices of an array, the last axis fastest."""

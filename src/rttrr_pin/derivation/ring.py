@@ -44,6 +44,10 @@ class Ring:
     def __contains__(self, name: str) -> bool:
         return name in self._generators
 
+    def names(self, *roles: Role) -> list[str]:
+        """The symbols of some roles, in their order."""
+        return [name for name, symbol in self.symbols.items() if symbol.role in roles]
+
     def cosine_of(self, name: str) -> str | None:
         """The cosine that goes with a sine; None for any other symbol."""
         if self.symbols[name].role is not Role.SINE:

@@ -14,11 +14,10 @@ from rttrr_pin.derivation.frame_table import ENTRIES, joint_motion, model_of
 from rttrr_pin.derivation.ring import evaluate
 from rttrr_pin.derivation.symbolic_robot import (
     AXES,
-    SLOT_DIMENSION,
+    SLOTS,
     ParameterSymbols,
     Slot,
     SymbolicRobot,
-    role_of,
     value_of_slot,
 )
 from rttrr_pin.derivation.symbols import INERTIA, LENGTH, MASS, NUMBER, Dimension, Expression, Symbol
@@ -109,7 +108,7 @@ def read_symbols(file: Table, path: Path, latex: bool, model: Model | None = Non
     payload_link, payload = _payload(file.table("payload").only(("link", "force", "moment")), model, symbols)
     slots |= payload
     _check_dimensions(slots, symbols, file)
-    roles = {name: role_of(slot) for slot, x in slots.items() for factors in x for name, _ in factors}
+    roles = {name: SLOTS[slot[0]].role for slot, x in slots.items() for factors in x for name, _ in factors}
     idle = [symbol.name for symbol in symbols if symbol.name not in roles]
     if idle:
         raise file.error(f"symbol {idle[0]!r} stands for no number: use it in [robot], [[link]] or [payload]")
@@ -205,7 +204,7 @@ def _check_dimensions(slots: Mapping[Slot, Expression], symbols: Sequence[Symbol
     """Each symbol may stand only for what it measures; a bare number has the unit of its place."""
     dimensions = {symbol.name: symbol.dimension for symbol in symbols}
     for slot, expression in slots.items():
-        wanted = SLOT_DIMENSION[str(slot[0])]
+        wanted = SLOTS[slot[0]].dimension
         for factors in expression:
             got = NUMBER
             for name, power in factors:

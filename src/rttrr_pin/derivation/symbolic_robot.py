@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from fractions import Fraction
 from functools import cached_property
+from typing import NamedTuple
 
 from rttrr_pin.core.algebra import Matrix, Scalar, Vector
 from rttrr_pin.core.joint import Joint
@@ -32,21 +33,34 @@ Slot = tuple[str | int, ...]
 """One number of a robot: ("mass", i), ("com", i, x), ("inertia", i, x, y), ("origin", i, x), ("gravity", x), and of the
 payload ("force", x), ("moment", x); links and joints i from 0, axes x, y of 0, 1, 2."""
 
-Named = tuple[Symbol, int, tuple[Slot, ...]]
-"""A symbol, its sign (1, or -1 where it stands for minus the number), and the numbers that it stands for."""
-
-SLOT_DIMENSION: Mapping[str, Dimension] = {
-    "mass": MASS,
-    "com": LENGTH,
-    "inertia": INERTIA,
-    "origin": LENGTH,
-    "gravity": ACCELERATION,
-    "force": FORCE,
-    "moment": MOMENT,
-}
-"""The dimension of each quantity of slot."""
-
 AXES = "xyz"
+
+
+@dataclass(frozen=True, slots=True)
+class SlotType:
+    """Numbers of a robot of one type.
+
+    Attributes:
+        dimension: what they measure.
+        value: the number that a model has, by what follows the type in a slot; 0 for the payload, which it has none of.
+        role: what their symbols stand for.
+    """
+
+    dimension: Dimension
+    value: Callable[..., float]
+    role: Role = Role.PARAMETER
+
+
+SLOTS: Mapping[str | int, SlotType] = {
+    "mass": SlotType(MASS, lambda model, i: model.links[i].mass),
+    "com": SlotType(LENGTH, lambda model, i, x: float(model.links[i].com[x])),
+    "inertia": SlotType(INERTIA, lambda model, i, x, y: float(model.links[i].inertia[x, y])),
+    "origin": SlotType(LENGTH, lambda model, i, x: float(model.joints[i].p[x])),
+    "gravity": SlotType(ACCELERATION, lambda model, x: float(model.gravity[x]), Role.GRAVITY),
+    "force": SlotType(FORCE, lambda model, x: 0.0, Role.PAYLOAD),
+    "moment": SlotType(MOMENT, lambda model, x: 0.0, Role.PAYLOAD),
+}
+"""By what a slot begins with."""
 
 RIGHT_ANGLE_ERROR = 1e-4
 """How far an entry of a rotation is from 0, 1 or -1 at most where a right angle was meant, and few digits written."""
@@ -182,42 +196,9 @@ def almost_right_angles(model: Model) -> int:
     return sum(ROTATION_ERROR < error <= RIGHT_ANGLE_ERROR for error in errors)
 
 
-def role_of(slot: Slot) -> Role:
-    """What the symbol for a number of the robot stands for."""
-    return {"gravity": Role.GRAVITY, "force": Role.PAYLOAD, "moment": Role.PAYLOAD}.get(str(slot[0]), Role.PARAMETER)
-
-
 def value_of_slot(model: Model, slot: Slot) -> float:
-    """The number that a robot has in a slot; 0 for the payload, which it has none of."""
-    quantity, *place = slot
-    i = [int(x) for x in place]
-    if quantity == "mass":
-        return model.links[i[0]].mass
-    if quantity == "com":
-        return float(model.links[i[0]].com[i[1]])
-    if quantity == "inertia":
-        return float(model.links[i[0]].inertia[i[1], i[2]])
-    if quantity == "origin":
-        return float(model.joints[i[0]].p[i[1]])
-    return float(model.gravity[i[0]]) if quantity == "gravity" else 0.0
-
-
-def symbols_of(model: Model, named: Iterable[Named]) -> ParameterSymbols:
-    """The symbols that stand each for one number of a robot, in one place or in several.
-
-    Args:
-        model: the robot.
-        named: for each its symbol, its sign (1, or -1 where it stands for minus the number), and the slots.
-    """
-    symbols: list[Symbol] = []
-    slots: dict[Slot, Expression] = {}
-    values: dict[str, float] = {}
-    for symbol, sign, places in named:
-        symbols.append(symbol)
-        values[symbol.name] = sign * value_of_slot(model, places[0])
-        for slot in places:
-            slots[slot] = {((symbol.name, 1),): Fraction(sign)}
-    return ParameterSymbols(tuple(symbols), slots, values)
+    """The number that a robot has in a slot."""
+    return SLOTS[slot[0]].value(model, *slot[1:])
 
 
 def default_symbols(model: Model, payload_link: int | None = None) -> ParameterSymbols:
@@ -226,45 +207,60 @@ def default_symbols(model: Model, payload_link: int | None = None) -> ParameterS
     The payload is named after its link. J_xy, J_xz, J_yz are minus the matrix elements, as the paper has them.
     """
     named = [*_link_symbols(model), *_gravity_symbols()]
-    used = [one for one in named if value_of_slot(model, one[2][0])]
-    return symbols_of(model, [*used, *_payload_symbols(payload_link)])
+    used = [one for one in named if value_of_slot(model, one.slots[0])]
+    return _parameters(model, [*used, *_payload_symbols(payload_link)])
 
 
 def payload_symbols(model: Model, payload_link: int | None) -> ParameterSymbols:
     """Symbols for the payload alone: the robot's own numbers stay numbers."""
-    return symbols_of(model, _payload_symbols(payload_link))
+    return _parameters(model, _payload_symbols(payload_link))
 
 
-def _link_symbols(model: Model) -> Iterator[Named]:
+class _Named(NamedTuple):
+    """A symbol and the numbers that it stands for; the sign is -1 where it stands for minus the number."""
+
+    name: str
+    latex: str
+    slots: tuple[Slot, ...]
+    sign: int = 1
+
+
+def _parameters(model: Model, named: Iterable[_Named]) -> ParameterSymbols:
+    symbols: list[Symbol] = []
+    slots: dict[Slot, Expression] = {}
+    values: dict[str, float] = {}
+    for name, latex, places, sign in named:
+        slot_type = SLOTS[places[0][0]]
+        symbols.append(Symbol(name, latex, slot_type.role, slot_type.dimension))
+        values[name] = sign * value_of_slot(model, places[0])
+        slots |= {slot: {((name, 1),): Fraction(sign)} for slot in places}
+    return ParameterSymbols(tuple(symbols), slots, values)
+
+
+def _link_symbols(model: Model) -> Iterator[_Named]:
     for i in range(len(model.links)):
         link, up = i + 1, f"{{}}^{index(i + 1)}"
         for x, axis in enumerate(AXES):
-            yield _named((("origin", i, x),), f"p_{link}{axis}", f"p_{{{link}{axis}}}")
-        yield _named((("mass", i),), f"M_{link}", f"M_{index(link)}")
+            yield _Named(f"p_{link}{axis}", f"p_{{{link}{axis}}}", (("origin", i, x),))
+        yield _Named(f"M_{link}", f"M_{index(link)}", (("mass", i),))
         for x, axis in enumerate(AXES):
-            yield _named((("com", i, x),), f"r_C{link}{axis}", f"{up}r_{{C_{{{link}{axis}}}}}")
+            yield _Named(f"r_C{link}{axis}", f"{up}r_{{C_{{{link}{axis}}}}}", (("com", i, x),))
         for x, axis in enumerate(AXES):
-            yield _named((("inertia", i, x, x),), f"J_{link}{axis}", f"{up}J_{axis}^*")
+            yield _Named(f"J_{link}{axis}", f"{up}J_{axis}^*", (("inertia", i, x, x),))
         for x, y in ((0, 1), (0, 2), (1, 2)):
             pair = AXES[x] + AXES[y]
-            places: tuple[Slot, ...] = (("inertia", i, x, y), ("inertia", i, y, x))
-            yield _named(places, f"J_{link}{pair}", f"{up}J_{{{pair}}}^*", -1)
+            yield _Named(f"J_{link}{pair}", f"{up}J_{{{pair}}}^*", (("inertia", i, x, y), ("inertia", i, y, x)), -1)
 
 
-def _gravity_symbols() -> Iterator[Named]:
-    for x, axis in enumerate(AXES):
-        name = "g" if axis == "z" else f"g_{axis}"
-        yield _named((("gravity", x),), name, name, -1)
+def _gravity_symbols() -> Iterator[_Named]:
+    for x, name in enumerate(("g_x", "g_y", "g")):
+        yield _Named(name, name, (("gravity", x),), -1)
 
 
-def _payload_symbols(link: int | None) -> Iterator[Named]:
+def _payload_symbols(link: int | None) -> Iterator[_Named]:
     if link is None:
         return
     up = f"{{}}^{index(link + 1)}"
     for quantity, name in (("force", "f"), ("moment", "n")):
         for x, axis in enumerate(AXES):
-            yield _named(((quantity, x),), f"{name}_tool_{axis}", rf"{up}{name}_{{\mathrm{{tool}},{axis}}}")
-
-
-def _named(slots: tuple[Slot, ...], identifier: str, latex: str, sign: int = 1) -> Named:
-    return Symbol(identifier, latex, role_of(slots[0]), SLOT_DIMENSION[str(slots[0][0])]), sign, slots
+            yield _Named(f"{name}_tool_{axis}", rf"{up}{name}_{{\mathrm{{tool}},{axis}}}", ((quantity, x),))

@@ -42,6 +42,18 @@ ACCELERATION = Dimension(length=1, time=-2)
 FORCE = Dimension(length=1, mass=1, time=-2)
 MOMENT = Dimension(length=2, mass=1, time=-2)
 
+DIMENSIONS: Mapping[str, Dimension] = {
+    "number": NUMBER,
+    "angle": NUMBER,
+    "length": LENGTH,
+    "mass": MASS,
+    "inertia": INERTIA,
+    "acceleration": ACCELERATION,
+    "force": FORCE,
+    "moment": MOMENT,
+}
+"""What a symbol may measure."""
+
 
 class Role(enum.StrEnum):
     """What a symbol stands for."""

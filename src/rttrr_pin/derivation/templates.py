@@ -8,31 +8,8 @@ from dataclasses import dataclass
 from itertools import product
 
 from rttrr_pin.derivation.symbolic_robot import AXES
-from rttrr_pin.derivation.symbols import (
-    ACCELERATION,
-    FORCE,
-    INERTIA,
-    LENGTH,
-    MASS,
-    MOMENT,
-    NUMBER,
-    Dimension,
-    Role,
-    Symbol,
-)
+from rttrr_pin.derivation.symbols import DIMENSIONS, Role, Symbol
 from rttrr_pin.derivation.tables import Table
-
-DIMENSIONS: Mapping[str, Dimension] = {
-    "number": NUMBER,
-    "angle": NUMBER,
-    "length": LENGTH,
-    "mass": MASS,
-    "inertia": INERTIA,
-    "acceleration": ACCELERATION,
-    "force": FORCE,
-    "moment": MOMENT,
-}
-"""What a symbol may measure."""
 
 PAIRS = ("xy", "xz", "yz")
 

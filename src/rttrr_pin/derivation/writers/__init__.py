@@ -1,15 +1,21 @@
 """Closed forms as documents and programs.
 
-A new format is one module with a function that fulfils `Writer`, and one line in `WRITERS`.
+A new format of documents is one module with a function from `Document` to text, and one line in `WRITERS`; a new
+programming language is one `Language` with its template.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from importlib import import_module
+from collections.abc import Callable, Mapping
 from typing import Protocol
 
 from rttrr_pin.derivation import Derivation
+from rttrr_pin.derivation.writers.content import document_of
+from rttrr_pin.derivation.writers.document import Document
+from rttrr_pin.derivation.writers.html import html
+from rttrr_pin.derivation.writers.latex import latex
+from rttrr_pin.derivation.writers.markdown import markdown
+from rttrr_pin.derivation.writers.programs import PYTHON, C
 from rttrr_pin.derivation.writers.table import show_derivation
 
 __all__ = ["WRITERS", "Writer", "show_derivation"]
@@ -22,23 +28,15 @@ class Writer(Protocol):
         """The whole text; `preface` is a paragraph to put before all others."""
 
 
-class Writers(Mapping[str, Writer]):
-    """Writers by format, each loaded when it is asked for: C needs the compiler's names, and others do not."""
-
-    FORMATS = ("latex", "markdown", "python", "c")
-
-    def __getitem__(self, name: str) -> Writer:
-        if name not in self.FORMATS:
-            raise KeyError(name)
-        writer: Writer = getattr(import_module(f"{__name__}.{name}"), name)
-        return writer
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.FORMATS)
-
-    def __len__(self) -> int:
-        return len(self.FORMATS)
+def _as(write: Callable[[Document], str]) -> Writer:
+    return lambda derivation, preface="": write(document_of(derivation, preface))
 
 
-WRITERS = Writers()
+WRITERS: Mapping[str, Writer] = {
+    "latex": _as(latex),
+    "markdown": _as(markdown),
+    "html": _as(html),
+    "python": PYTHON,
+    "c": C,
+}
 """By format."""

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from rttrr_pin.core.model import Model
 from rttrr_pin.derivation import Derivation, Symbol
-from rttrr_pin.derivation.motion import angle_places, angles
+from rttrr_pin.derivation.motion import angles
 from rttrr_pin.derivation.symbolic_robot import AXES, Slot
 from rttrr_pin.derivation.symbols import ACCELERATION, FORCE, INERTIA, LENGTH, MASS, MOMENT, NUMBER, Dimension, Role
 from rttrr_pin.derivation.writers.wording import plain
@@ -27,6 +27,17 @@ UNITS: dict[Dimension, str] = {
 }
 """What people write for a dimension."""
 
+
+MEANINGS = {
+    "mass": "mass of {link}",
+    "com": "{axes} of the centre of mass of {link}",
+    "inertia": "i{axes} of the inertia tensor of {link} about its centre of mass",
+    "origin": "{axes} of the origin of {joint} on {parent}",
+    "gravity": "gravity against the base's {axes} axis",
+    "force": "payload: {axes} of the force that {link} exerts on its surroundings",
+    "moment": "payload: {axes} of the moment that {link} exerts on its surroundings",
+}
+"""What the numbers of a robot are."""
 
 MOVING = (Role.COORDINATE, Role.RATE, Role.ACCELERATION, Role.SIGN)
 """What the table begins with."""
@@ -62,7 +73,7 @@ def glossary(derivation: Derivation) -> list[Entry]:
 
 def parameters(derivation: Derivation, payload: bool = False) -> Iterator[Entry]:
     """The symbols that stand for the robot's numbers; on request those of the payload too."""
-    named, model = derivation.robot.parameters, derivation.robot.model
+    named = derivation.robot.parameters
     for symbol in named.symbols:
         of_payload = symbol.role is Role.PAYLOAD
         if of_payload and not payload:
@@ -72,7 +83,7 @@ def parameters(derivation: Derivation, payload: bool = False) -> Iterator[Entry]
             sign = terms.get(((symbol.name, 1),), Fraction(0))
             if sign:
                 minus = "minus " if sign < 0 and slot[0] != "gravity" else ""
-                meanings[minus + _meaning(model, slot, derivation)] = None
+                meanings[minus + _meaning(derivation, slot)] = None
         yield Entry(symbol, ", ".join(meanings), unit(symbol), None if of_payload else named.values[symbol.name])
 
 
@@ -107,10 +118,7 @@ def unit(symbol: Symbol) -> str:
 
 def axis_units(model: Model) -> tuple[list[str], list[str]]:
     """Units of the entries of q, and of those of v; accelerations are per second more."""
-    places = set(angle_places(model))
-    q = ["rad" if k in places else "" for k in range(1, model.nq + 1)]
-    slots = [own.name for joint in model.moving for own in joint.type.coordinates]
-    q = [u or ("1" if slot.startswith("q") else "m") for u, slot in zip(q, slots, strict=True)]
+    q: list[str] = [coordinate.unit or "1" for joint in model.moving for coordinate in joint.type.coordinates]
     rotations = [rotation for joint in model.moving for rotation in joint.type.rotations]
     return q, ["rad/s" if rotation else "m/s" for rotation in rotations]
 
@@ -129,23 +137,13 @@ def _of_motion(model: Model, symbol: Symbol) -> Entry:
     return Entry(symbol, f"{word} of {of}", unit(symbol))
 
 
-def _meaning(model: Model, slot: Slot, derivation: Derivation) -> str:
+def _meaning(derivation: Derivation, slot: Slot) -> str:
     """A number of a robot in words."""
-    number, *place = slot
-    i = [int(x) for x in place]
-    axes = "".join(AXES[x] for x in sorted(i[1:]))
-    if number in ("force", "moment"):
-        link = derivation.robot.payload_link or 0
-        return f"payload: {AXES[i[0]]} of the {number} that {plain(model.links[link].name)} exerts on its surroundings"
-    if number == "gravity":
-        return f"gravity against the base's {AXES[i[0]]} axis"
-    if number == "origin":
-        parent = model.joints[i[0]].parent
-        on = model.links[parent] if parent >= 0 else model.root
-        return f"{axes} of the origin of {plain(model.joints[i[0]].name)} on {plain(on.name)}"
-    link_name = plain(model.links[i[0]].name)
-    if number == "mass":
-        return f"mass of {link_name}"
-    if number == "com":
-        return f"{axes} of the centre of mass of {link_name}"
-    return f"i{axes} of the inertia tensor of {link_name} about its centre of mass"
+    model, number, places = derivation.robot.model, str(slot[0]), [int(x) for x in slot[1:]]
+    i = places.pop(0) if number in ("mass", "com", "inertia", "origin") else derivation.robot.payload_link
+    names = {"axes": "".join(AXES[x] for x in sorted(places))}
+    if i is not None:
+        parent = model.joints[i].parent
+        names["link"], names["joint"] = plain(model.links[i].name), plain(model.joints[i].name)
+        names["parent"] = plain((model.links[parent] if parent >= 0 else model.root).name)
+    return MEANINGS[number].format(**names)

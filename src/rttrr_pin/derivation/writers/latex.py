@@ -1,81 +1,110 @@
-"""Closed forms as a LaTeX document that compiles by itself, lines broken to fit the page."""
+r"""Documents as LaTeX articles that compile by themselves; changed terms are in a box of another colour."""
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 
-from rttrr_pin.derivation import Derivation
-from rttrr_pin.derivation.latex import decimal
-from rttrr_pin.derivation.writers import mathematics
-from rttrr_pin.derivation.writers import wording as words
-from rttrr_pin.derivation.writers.glossary import Entry, glossary
+from rttrr_pin.derivation.writers.document import (
+    Block,
+    Bullets,
+    Display,
+    Document,
+    Equations,
+    Heading,
+    Paragraph,
+    Table,
+    Text,
+    written,
+)
 from rttrr_pin.reporting.tex import code, document, escaped
 
 PREAMBLE = r"""\allowdisplaybreaks
+\usepackage{xcolor}
+\setlength{\fboxsep}{1.5pt}
+\newcommand{\term}[1]{\mbox{$#1$}}
+\newcommand{\changed}[1]{\colorbox{yellow!60}{\boldmath$#1$}}
+\newcommand{\thinspaceorbreak}{\,\allowbreak}
 """
-
-COLUMNS = "".join(
-    rf">{{\ragged{side}\arraybackslash}}p{{{share}\textwidth}}"
-    for side, share in (("right", 0.07), ("right", 0.51), ("right", 0.09), ("left", 0.25))
-)
-"""Symbol, meaning, unit, value; their widths are given, so that one run of TeX sets them."""
 
 MOST_LINES = 120
 """Of one environment, unless an equation alone has more: TeX holds it whole."""
 
 
-def latex(derivation: Derivation, preface: str = "") -> str:
-    """A document.
+def latex(content: Document) -> str:
+    """A document as LaTeX."""
+    body = "\n\n".join(_block(block) for block in content.blocks)
+    # to TeX, an empty line before a display is a paragraph of its own
+    body = body.replace("\n\n\\begin{align*}", "\n\\begin{align*}")
+    return document(PREAMBLE, f"{{\\raggedright\\LARGE\\bfseries {_words(content.title)}\\par}}\n\n{body}")
 
-    Args:
-        derivation: what to write.
-        preface: a paragraph to put before all others.
-    """
-    model = derivation.robot.model
-    parts = [rf"{{\raggedright\LARGE\bfseries {_words(f'Dynamic model of {words.plain(model.name)}')}\par}}"]
-    parts += [_words(text) for text in (*([preface] if preface else []), *words.conventions(derivation))]
-    parts.append(_words(f"Links and joints: {words.names_of_links(model)}."))
-    if entries := glossary(derivation):  # a longtable without rows does not compile
-        parts += [r"\section*{Symbols}", "\n".join(_table(entries))]
-    if derivation.steps:
-        parts.append(_section(words.STEPS, words.STEPS_MEANING, mathematics.steps(derivation)))
-    for name in derivation.quantities:
-        shown = mathematics.equations(derivation, name)
-        parts.append(_section(words.TITLES[name], words.heading(derivation, name), shown))
-    return document(PREAMBLE, "\n\n".join(parts))
+
+def _block(block: Block) -> str:
+    match block:
+        case Heading(text, level):
+            return rf"\{'sub' * (level - 1)}section*{{{_words(text)}}}"
+        case Paragraph(text):
+            return _text(text)
+        case Bullets(items):
+            lines = "\n".join(rf"\item {{}}{_text(item)}" for item in items)
+            return f"\\begin{{itemize}}\n{lines}\n\\end{{itemize}}"
+        case Table():
+            return _table(block)
+        case Display():
+            return _display(block)
+        case Equations():
+            return "\n".join(_aligned(lines) for lines in block.aligned(MOST_LINES, split=False))
+
+
+def _table(table: Table) -> str:
+    """Columns of given widths, so that one run of TeX sets them."""
+    columns = "".join(
+        rf">{{\raggedright\arraybackslash}}p{{{width - 0.02:.3f}\textwidth}}" for width in table.widths
+    ) or "l" * len(table.heads)
+    head = " & ".join(escaped(text) for text in table.heads)
+    rows = "\n".join(" & ".join(_text(cell) for cell in row) + r" \\" for row in table.rows)
+    return (
+        f"{{\\small\\setlength{{\\LTleft}}{{0pt}}\\setlength{{\\tabcolsep}}{{0.01\\textwidth}}\n"
+        f"\\begin{{longtable}}{{{columns}}}\n\\toprule\n{head} \\\\\n\\midrule\n\\endhead\n"
+        f"\\bottomrule\n\\endfoot\n{rows}\n\\end{{longtable}}}}"
+    )
+
+
+def _text(text: Text) -> str:
+    return written(text, _words, lambda words: rf"\textbf{{{words}}}", lambda tex: f"${_breakable(tex)}$", _code)
 
 
 def _words(text: str) -> str:
-    """Text, with what stands between backquotes in typewriter; names may be broken behind an underscore."""
-    parts = [code(part) if k % 2 else escaped(part) for k, part in enumerate(text.split("`"))]
-    return "".join(parts).replace(r"\_", r"\_\allowbreak{}")
+    """Names may be broken behind an underscore."""
+    return escaped(text).replace(r"\_", r"\_\allowbreak{}")
 
 
-def _section(title: str, meaning: str, equations: Iterable[mathematics.Equation]) -> str:
-    """A heading, a paragraph, and formulas, without the empty lines that would be paragraphs to TeX."""
-    blocks = mathematics.blocks(equations, MOST_LINES, split=False)
-    return "\n".join([rf"\section*{{{_words(title)}}}", _words(meaning), *(_aligned(block) for block in blocks)])
+def _code(text: str) -> str:
+    """Typewriter, with breaks allowed behind operators and underscores."""
+    return code(text).replace("*", r"*\allowbreak{}").replace(r"\_", r"\_\allowbreak{}")
 
 
-def _unit(text: str) -> str:
-    return re.sub(r"\^(-?\d+)", r"\\textsuperscript{\1}", text).replace(" ", "~")
+def _breakable(tex: str) -> str:
+    """A product that may be broken at its thin spaces: in the column of a table it is often too long."""
+    return tex.replace(r" \, ", r" \thinspaceorbreak ")
 
 
-def _table(entries: Iterable[Entry]) -> Iterator[str]:
-    yield r"{\small\setlength{\LTleft}{0pt}\setlength{\tabcolsep}{4pt}"
-    yield rf"\begin{{longtable}}{{{COLUMNS}}}"
-    yield r"\toprule" + "\n" + r"symbol & meaning & unit & value \\" + "\n" + r"\midrule" + "\n" + r"\endhead"
-    yield r"\bottomrule" + "\n" + r"\endfoot"
-    for entry in entries:
-        value = "" if entry.value is None else f"${decimal(entry.value)}$"
-        yield rf"${entry.symbol.latex}$ & {_words(entry.meaning)} & {_unit(entry.unit)} & {value} \\"
-    yield r"\end{longtable}}"
+def _display(display: Display) -> str:
+    """A paragraph of terms, each in a box that is not broken, so that TeX breaks lines and pages before signs."""
+    if display.code:
+        return f"\\begin{{verbatim}}\n{display.program()}\n\\end{{verbatim}}"
+    terms = "\n".join(rf"\{'changed' if changed else 'term'}{{{_signed(text)}}}" for text, changed in display.terms)
+    left = rf"\term{{{display.left} = {{}}}}"
+    return f"\\begingroup\\raggedright\\hangindent=2em\\hangafter=1\n{left}\n{terms}\\par\\endgroup"
 
 
-def _aligned(block: Sequence[str]) -> str:
+def _signed(text: str) -> str:
+    """A term with its sign, which has the space of an operator though nothing stands before it."""
+    return "{} " + text if text[:1] in "+-" else text
+
+
+def _aligned(lines: Sequence[str]) -> str:
     """Lines of equations, with some room between one equation and the next."""
-    ends = [r" \\" if after.startswith("& ") else r" \\[1ex]" for _, after in pairwise(block)]
-    body = "\n".join(line + end for line, end in zip(block, [*ends, ""], strict=True))
+    ends = [r" \\" if after.startswith("& ") else r" \\[1ex]" for _, after in pairwise(lines)]
+    body = "\n".join(line + end for line, end in zip(lines, [*ends, ""], strict=True))
     return f"\\begin{{align*}}\n{body}\n\\end{{align*}}"

@@ -57,12 +57,6 @@ def lines(expression: Sum, notation: Notation, room: float) -> list[str]:
     return [line for pieces in chunks for line in _filled(pieces, notation, room)] or [notation.number(Fraction(0))]
 
 
-def text(expression: Sum, notation: Notation) -> str:
-    """An expression in one line."""
-    pieces = [piece.text for pieces in _terms(expression, notation, 0) for piece in pieces]
-    return "".join(pieces) or notation.number(Fraction(0))
-
-
 def _filled(pieces: Sequence[Piece], notation: Notation, room: float) -> Iterator[str]:
     """Pieces in lines, each broken where the fewest brackets are open, and as late as can be."""
     widths = [notation.width(piece.text) for piece in pieces]

@@ -59,11 +59,11 @@ def conventions(derivation: Derivation) -> Iterator[str]:
         )
 
 
-def heading(derivation: Derivation, name: str) -> str:
+def heading(name: str) -> str:
     """What a quantity is, with its unit."""
     quantity = QUANTITIES[name]
-    meaning = quantity.meaning[0].upper() + quantity.meaning[1:]
-    return f"{meaning} [{quantity.unit}]." + (" It is symmetric; the upper half is shown." if name == "M" else "")
+    symmetric = " It is symmetric; the upper half is shown." if name == "M" else ""
+    return f"{quantity.sentence} [{quantity.unit}].{symmetric}"
 
 
 def names_of_links(model: Model) -> str:
