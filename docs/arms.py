@@ -13,9 +13,8 @@ from types import MappingProxyType
 
 from rttrr_pin.core.solids import Part, Triple
 from rttrr_pin.errors import InputError
-from rttrr_pin.modular_arm.build import Arm, build_arm
+from rttrr_pin.modular_arm.build import Arm, build_arm, build_urdf, computed, given
 from rttrr_pin.modular_arm.modules import BASE, BASE_EXIT, CODES, MATERIALS, MODULES, TOOL, TOOL_ENTRY, Module
-from rttrr_pin.modular_arm.urdf_text import build_urdf, computed, given
 
 PAPER: Mapping[tuple[str, str], str] = MappingProxyType(
     {

@@ -22,8 +22,7 @@ RTTRR has z, z, y, z, y. The R that end the code, two at most and never the firs
 
 from __future__ import annotations
 
-from rttrr_pin.modular_arm.build import Arm, build_arm, modules_of
+from rttrr_pin.modular_arm.build import Arm, build_arm, build_urdf, modules_of
 from rttrr_pin.modular_arm.modules import CODES, MATERIALS, MODULES, Module
-from rttrr_pin.modular_arm.urdf_text import build_urdf
 
 __all__ = ["CODES", "MATERIALS", "MODULES", "Arm", "Module", "build_arm", "build_urdf", "modules_of"]

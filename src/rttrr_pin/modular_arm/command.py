@@ -8,7 +8,7 @@ from pathlib import Path
 import click
 
 from rttrr_pin.errors import InputError
-from rttrr_pin.modular_arm.urdf_text import build_urdf
+from rttrr_pin.modular_arm.build import build_urdf
 from rttrr_pin.reporting.files import write_whole
 from rttrr_pin.reporting.options import flag
 from rttrr_pin.reporting.output import AGREE

@@ -20,11 +20,11 @@ from numpy.typing import NDArray
 
 from rttrr_pin.core.solids import rotation
 from rttrr_pin.errors import UrdfError
+from rttrr_pin.urdf.document import ENTRIES
+from rttrr_pin.urdf.vocabulary import ATTRIBUTES
 
 ROTATION_TOLERANCE = 8 * float(np.finfo(float).eps)
 """On each element of a rotation matrix, between the object's and the one that the written angles give back."""
-
-LIMITS = ("effort", "velocity", "lower", "upper")
 
 
 def as_urdf(robot: Any, source: str) -> str:
@@ -73,8 +73,7 @@ class _Writer:
             tensor = self.array("inertia", link.inertial.inertia, (3, 3))
             if not np.array_equal(tensor, tensor.T, equal_nan=True):
                 raise self.error(f"its inertia {tensor.tolist()} is not symmetric: make it so, inertia tensors are")
-            entries = {f"i{'xyz'[i]}{'xyz'[j]}": repr(float(tensor[i, j])) for i in range(3) for j in range(i, 3)}
-            ET.SubElement(inertial, "inertia", entries)
+            ET.SubElement(inertial, "inertia", {name: repr(float(tensor[at])) for name, at in ENTRIES.items()})
 
     def joint(self, parent: ET.Element, joint: Any) -> None:
         self.here = f'joint "{joint.name}"'
@@ -84,8 +83,8 @@ class _Writer:
         self.origin(element, joint.origin)
         if joint.axis is not None:
             ET.SubElement(element, "axis", xyz=_written(self.array("axis", joint.axis, (3,))))
-        self.numbers_of(element, "limit", joint.limit, LIMITS)
-        self.numbers_of(element, "dynamics", joint.dynamics, ("damping", "friction"))
+        self.numbers_of(element, "limit", joint.limit, ATTRIBUTES["limit"])
+        self.numbers_of(element, "dynamics", joint.dynamics, ATTRIBUTES["dynamics"])
         mimic = self.numbers_of(element, "mimic", joint.mimic, ("multiplier", "offset"))
         if mimic is not None:
             mimic.attrib.update(self.texts(joint=joint.mimic.joint))
