@@ -15,13 +15,13 @@ from rttrr_pin.inspection import Inspection, inspect
 from rttrr_pin.inspection.exact import (
     Matrix,
     Shape,
+    nearest_possible,
     rank_if_positive,
     second_moments,
     shape_of,
-    within_rounding,
 )
 from rttrr_pin.urdf.decimals import Number, text_of
-from rttrr_pin.urdf.document import symmetric
+from rttrr_pin.urdf.document import Placement, UrdfInertial, symmetric
 from support.inspected import ENTRIES, arm, diagonal, inertial
 from support.serial_chains import EXAMPLES
 from support.tolerances import MODEL
@@ -168,7 +168,7 @@ def test_rounding_never_makes_a_plate_impossible(
     entries = {name: Number(f"{round(value * 10**places)}e{-places}") for name, value in exact.items()}
     written = symmetric({name: number.exact for name, number in entries.items()})
     if rank_if_positive(second_moments(written)) is None:
-        mended = within_rounding(entries)
+        mended = nearest_possible(UrdfInertial(Placement(), Number("1"), entries))
         assert mended is not None
         assert rank_if_positive(second_moments(symmetric(mended))) is not None
         trace = sum(abs(entries[name].exact) for name in ("ixx", "iyy", "izz"))

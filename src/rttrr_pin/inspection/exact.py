@@ -20,7 +20,6 @@ from itertools import combinations
 
 import numpy as np
 
-from rttrr_pin.urdf.decimals import Number
 from rttrr_pin.urdf.document import ENTRIES, UrdfInertial, symmetric
 
 Matrix = tuple[tuple[Fraction, ...], ...]
@@ -95,10 +94,9 @@ def shape_of(mass: Fraction, rank: int | None) -> Shape:
     return (Shape.POINT, Shape.ROD, Shape.PLATE, Shape.SOLID)[rank]
 
 
-@lru_cache(maxsize=4096)
-def is_positive(inertial: UrdfInertial) -> bool:
-    """Whether the tensor is positive semidefinite."""
-    return rank_if_positive(_tensor(inertial)) is not None
+def shape(inertial: UrdfInertial) -> Shape:
+    """What body has this mass and inertia."""
+    return shape_of(inertial.mass.exact, rank(inertial))
 
 
 @lru_cache(maxsize=4096)
@@ -107,37 +105,30 @@ def rank(inertial: UrdfInertial) -> int | None:
     return rank_if_positive(second_moments(_tensor(inertial)))
 
 
-def shape(inertial: UrdfInertial) -> Shape:
-    """What body has this mass and inertia."""
-    return shape_of(inertial.mass.exact, rank(inertial))
-
-
 @lru_cache(maxsize=4096)
-def nearest_possible(inertial: UrdfInertial) -> dict[str, Fraction] | None:
-    """Entries of a tensor that a body can have and that rounds to the ones written, if there is one."""
-    return within_rounding(inertial.entries)
+def is_positive(inertial: UrdfInertial) -> bool:
+    """Whether the tensor is positive semidefinite."""
+    return rank_if_positive(_tensor(inertial)) is not None
 
 
 def _tensor(inertial: UrdfInertial) -> Matrix:
     return inertial.tensor_of(lambda number: number.exact)
 
 
-def within_rounding(entries: dict[str, Number]) -> dict[str, Fraction] | None:
-    """A tensor that a body can have and that rounds to the numbers written; None where none was found.
+@lru_cache(maxsize=4096)
+def nearest_possible(inertial: UrdfInertial) -> dict[str, Fraction] | None:
+    """The entries of a tensor that a body can have and that rounds to the numbers written; None where none was found.
 
     Each entry may move by half a unit of its last digit, or by the rounding of double precision. The search is in
     floating point; what it finds is checked exactly.
-
-    Args:
-        entries: URDF's six, by name.
     """
-    trace = sum((abs(entries[name].exact) for name in DIAGONAL), Fraction(0))
-    written = {name: number.exact for name, number in entries.items()}
+    written = {name: number.exact for name, number in inertial.entries.items()}
+    trace = sum((abs(written[name]) for name in DIAGONAL), Fraction(0))
     if any(abs(value) > trace for value in written.values()):
         return None
     may = {
         name: number.half if DOUBLE * trace < number.half <= COARSE * trace else DOUBLE * trace * bool(number.exact)
-        for name, number in entries.items()
+        for name, number in inertial.entries.items()
     }
     for shares in _searched(written, may):
         for step in STEPS:

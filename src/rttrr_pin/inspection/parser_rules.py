@@ -100,7 +100,7 @@ def _anchored(document: UrdfDocument) -> tuple[str, ...]:
     return merged_links(document)[document.root].members
 
 
-def _inertials(document: UrdfDocument, moving: bool = False) -> Iterator[tuple[str, UrdfInertial]]:
+def inertials(document: UrdfDocument, moving: bool = False) -> Iterator[tuple[str, UrdfInertial]]:
     """Of all links that have one, or of those that do not belong to the world."""
     left_out = _anchored(document) if moving else ()
     for name, link in document.links.items():
@@ -128,13 +128,10 @@ def unparsed_joint(joint: UrdfJoint) -> bool:
     return any(map(blank_behind, numbers)) or any(map(other_blanks, vectors))
 
 
-def unparsed_inertial(document: UrdfDocument) -> Iterator[str]:
+def unparsed_inertial(inertial: UrdfInertial) -> bool:
     """The same of an <inertial>."""
-    for name, inertial in _inertials(document):
-        numbers = (inertial.mass, *inertial.entries.values())
-        vectors = (inertial.origin.xyz, inertial.origin.rpy)
-        if any(map(blank_behind, numbers)) or any(map(other_blanks, vectors)):
-            yield name
+    numbers, vectors = (inertial.mass, *inertial.entries.values()), (inertial.origin.xyz, inertial.origin.rpy)
+    return any(map(blank_behind, numbers)) or any(map(other_blanks, vectors))
 
 
 def floating_on_moving(document: UrdfDocument) -> Iterator[str]:
@@ -146,15 +143,15 @@ def floating_on_moving(document: UrdfDocument) -> Iterator[str]:
 def pinocchio_sum(document: UrdfDocument) -> Iterator[str]:
     """Moving links whose mass, with what is fixed to them, is below eps, and matters."""
     for name, merged in merged_links(document).items():
-        inertials = [document.links[member].inertial for member in merged.members]
-        massive = sum(inertial is not None and inertial.mass.exact != 0 for inertial in inertials)
+        members = [document.links[member].inertial for member in merged.members]
+        massive = sum(inertial is not None and inertial.mass.exact != 0 for inertial in members)
         if name != document.root and merged.mass < EPS and (massive > 1 or merged.moment.any()):
             yield name
 
 
 def mujoco_test(document: UrdfDocument) -> Iterator[tuple[str, str]]:
     """The test of tensors that MuJoCo fails, first of the moments, then of the triangle; six zeros it does not test."""
-    for name, inertial in _inertials(document):
+    for name, inertial in inertials(document):
         if inertial.tensor.any():
             low, mid, high = (float(x) for x in _sorted_moments(inertial.tensor))
             slack = JACOBI * (1.0 + abs(low) + abs(mid) + abs(high)) if _products(inertial.tensor) else 0.0
@@ -186,13 +183,13 @@ def _from_shapes(document: UrdfDocument, name: str) -> bool:
 def mujoco_negative(document: UrdfDocument) -> Iterator[str]:
     """Negative masses of links that are merged; of a link by itself, that is too little mass."""
     several = {name for merged in merged_links(document).values() if len(merged.members) > 1 for name in merged.members}
-    moving = _inertials(document, moving=True)
+    moving = inertials(document, moving=True)
     return (name for name, inertial in moving if name in several and inertial.mass.exact < 0)
 
 
 def mujoco_massless_tensor(document: UrdfDocument) -> Iterator[str]:
     """Inertia without mass that is merged into a link."""
-    for name, inertial in _inertials(document, moving=True):
+    for name, inertial in inertials(document, moving=True):
         massless = 0 <= inertial.mass.exact < SMALLEST_MOVING
         if massless and not document.carried_by[name].moves and inertial.tensor.any():
             yield name
@@ -204,21 +201,13 @@ def mujoco_geometry(document: UrdfDocument) -> Iterator[str]:
     return (name for name in document.links if name not in anchored and _from_shapes(document, name))
 
 
-def mujoco_products(document: UrdfDocument) -> Iterator[str]:
+def mujoco_products(inertial: UrdfInertial) -> bool:
     """Products below 1e-12 that are not negligible."""
-    for name, inertial in _inertials(document, moving=True):
-        largest = _products(inertial.tensor)
-        if NEGLIGIBLE * abs(float(np.trace(inertial.tensor))) < largest < SMALLEST_PRODUCT:
-            yield name
+    return NEGLIGIBLE * abs(float(np.trace(inertial.tensor))) < _products(inertial.tensor) < SMALLEST_PRODUCT
 
 
-def mujoco_rpy(document: UrdfDocument) -> Iterator[str]:
-    """Tensors that their rpy turns into others."""
-    moving = _inertials(document, moving=True)
-    return (name for name, inertial in moving if _differ(inertial.inertia, inertial.tensor))
-
-
-def _differ(turned: Array, tensor: Array) -> bool:
+def differ(turned: Array, tensor: Array) -> bool:
+    """Whether turning a tensor makes another one."""
     return bool(np.linalg.norm(turned - tensor) > NEGLIGIBLE * abs(float(np.trace(tensor))))
 
 
@@ -244,7 +233,7 @@ def _misplaced(inertial: UrdfInertial, R: Array, p: Array) -> bool:
     axes_turned = bool(_products(tensor)) or bool(np.any(np.diff(tensor.diagonal()) > 0.0))
     if np.allclose(R, np.eye(3), rtol=0.0, atol=NEGLIGIBLE):
         return axes_turned and bool(np.any(np.abs(p) > NEGLIGIBLE))
-    return axes_turned or bool(inertial.origin.p.any()) or _differ(R @ tensor @ R.T, tensor)
+    return axes_turned or bool(inertial.origin.p.any()) or differ(R @ tensor @ R.T, tensor)
 
 
 def _outcome(moments: Array, tolerance: float, rounding: float) -> str:
@@ -256,17 +245,10 @@ def _outcome(moments: Array, tolerance: float, rounding: float) -> str:
 
 def drake_test(document: UrdfDocument) -> Iterator[tuple[str, str]]:
     """Drake's test of tensors."""
-    for name, inertial in _inertials(document):
+    for name, inertial in inertials(document):
         moments = _sorted_moments(inertial.tensor)
         rounding = 8.0 * EPS * float(np.abs(inertial.tensor).max())
         yield name, _outcome(moments, DRAKE_EPS * max(1.0, float(moments.sum()) / 2.0), rounding)
-
-
-def drake_mass(document: UrdfDocument) -> Iterator[str]:
-    """Negative mass, or none with an inertia."""
-    for name, inertial in _inertials(document):
-        if inertial.mass.exact < 0 or (inertial.mass.exact == 0 and inertial.tensor.any()):
-            yield name
 
 
 def gazebo_test(document: UrdfDocument) -> Iterator[tuple[str, str]]:
@@ -298,4 +280,4 @@ def gazebo_empty(document: UrdfDocument) -> Iterator[str]:
 
 def kdl_root(document: UrdfDocument) -> Iterator[str]:
     """The root, where it has an <inertial>."""
-    return (name for name, _ in _inertials(document) if name == document.root)
+    return (name for name, _ in inertials(document) if name == document.root)

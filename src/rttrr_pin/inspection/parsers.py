@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 from rttrr_pin.inspection import parser_rules as rules
 from rttrr_pin.inspection.structure import LIMITED
-from rttrr_pin.urdf.document import UrdfDocument, UrdfJoint
+from rttrr_pin.urdf.document import UrdfDocument, UrdfInertial, UrdfJoint
 
 Places = Callable[[UrdfDocument], Iterator[str]]
 
@@ -113,6 +113,11 @@ def joints(holds: Callable[[UrdfJoint], object]) -> Places:
     return lambda document: (joint.name for joint in document.joints.values() if holds(joint))
 
 
+def inertials(holds: Callable[[UrdfInertial], object], moving: bool = False) -> Places:
+    """The links of whose <inertial> something holds; with `moving`, none that belongs to the world."""
+    return lambda document: (name for name, inertial in rules.inertials(document, moving) if holds(inertial))
+
+
 def where(test: Callable[[UrdfDocument], Iterator[tuple[str, str]]], outcome: str) -> Places:
     """The links of which a test comes out so."""
     return lambda document: (name for name, came_out in test(document) if came_out == outcome)
@@ -139,7 +144,7 @@ RULES = (
          joints(lambda joint: joint.limit is not None and not {"effort", "velocity"} <= joint.limit.keys())),
     Rule("urdfdom-inertial", URDFDOM, Behaviour.ALTER,
          "a mass or moment with a blank behind it, or an inertial origin with a tab or line end, is dropped",
-         "urdfdom: urdf_parser/src/link.cpp, parseInertial", rules.unparsed_inertial),
+         "urdfdom: urdf_parser/src/link.cpp, parseInertial", inertials(rules.unparsed_inertial)),
     Rule("urdfdom-joint", URDFDOM, Behaviour.REFUSE,
          "a joint's vector has a tab or line end, or a limit, damping, friction or mimic a blank behind it",
          "urdfdom: urdf_parser/src/joint.cpp, parseJoint", joints(rules.unparsed_joint)),
@@ -172,10 +177,13 @@ RULES = (
          "mujoco: src/user/user_objects.cc, mjCBody::InertiaFromGeom", rules.mujoco_geometry),
     Rule("mujoco-products", (MUJOCO,), Behaviour.EITHER,
          "before version 3.14, products of inertia below 1e-12 kg m^2 are dropped (kEigEPS)",
-         "mujoco: src/user/user_util.cc, mjuu_eig3", rules.mujoco_products, at_worst=Behaviour.ALTER),
+         "mujoco: src/user/user_util.cc, mjuu_eig3",
+         inertials(rules.mujoco_products, moving=True), at_worst=Behaviour.ALTER),
     Rule("mujoco-rpy", (MUJOCO,), Behaviour.EITHER,
          "before version 3.14, the rpy of <inertial> is ignored: its tensor is taken in the axes of the link",
-         "mujoco: src/user/user_objects.cc, mjCBody::Compile", rules.mujoco_rpy, at_worst=Behaviour.ALTER),
+         "mujoco: src/user/user_objects.cc, mjCBody::Compile",
+         inertials(lambda inertial: rules.differ(inertial.inertia, inertial.tensor), moving=True),
+         at_worst=Behaviour.ALTER),
     Rule("mujoco-fused", (MUJOCO,), Behaviour.EITHER,
          "from version 3.3.3 to 3.10, a fixed link that is turned, or whose principal axes are, is merged wrongly",
          "mujoco: src/user/user_objects.cc, mjCBody::AccumulateInertia", rules.mujoco_fused,
@@ -203,7 +211,8 @@ RULES = (
          where(rules.drake_test, "rounding"), at_worst=Behaviour.ALTER),
     Rule("drake-mass", (DRAKE,), Behaviour.ALTER,
          "a negative mass, or none with an inertia, becomes 1 kg of water, with a warning",
-         "drake: multibody/parsing/detail_common.cc, ParseSpatialInertia", rules.drake_mass),
+         "drake: multibody/parsing/detail_common.cc, ParseSpatialInertia",
+         inertials(lambda inertial: inertial.mass.exact < 0 or (inertial.mass.exact == 0 and inertial.tensor.any()))),
     Rule("drake-floating", (DRAKE,), Behaviour.ALTER,
          "a floating joint is left out, with a warning: the link is free in the world, whatever its parent",
          "drake: multibody/parsing/detail_urdf_parser.cc, UrdfParser::ParseJoint",

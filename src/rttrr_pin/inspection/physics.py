@@ -12,11 +12,6 @@ from rttrr_pin.urdf.decimals import text_of
 from rttrr_pin.urdf.document import UrdfInertial
 
 
-def _empty(inertial: UrdfInertial) -> bool:
-    """Whether all six entries are zero."""
-    return not any(number.exact for number in inertial.entries.values())
-
-
 @check("P101", Severity.ERROR)
 def negative_mass(subject: Subject) -> Iterator[Observation]:
     """No mass is negative."""
@@ -29,7 +24,7 @@ def negative_mass(subject: Subject) -> Iterator[Observation]:
 def tensor_without_mass(subject: Subject) -> Iterator[Observation]:
     """A link without mass has no inertia either."""
     for link, inertial in subject.inertials():
-        if inertial.mass.exact == 0 and not _empty(inertial):
+        if inertial.mass.exact == 0 and not inertial.is_zero:
             yield Observation(
                 link, 0.0, "kg", "the mass is zero, the inertia is not",
                 "write the mass, or zeros for all of the inertia if the link is only a frame",

@@ -51,35 +51,34 @@ SURE_FAR = 0.02
 
 @dataclass(frozen=True, eq=False)
 class Case:
-    """A link whose inertia can be compared with its geometry."""
+    """A link whose inertia can be compared with its geometry.
+
+    Attributes:
+        link: the link.
+        inertial: its <inertial>.
+        looks: its geometry.
+        mass: [kg].
+        gyration: the largest radius of gyration [m].
+        reach: from the centre of mass to the farthest point drawn [m].
+    """
 
     link: UrdfLink
     inertial: UrdfInertial
     looks: Looks
-
-    @property
-    def mass(self) -> float:
-        """[kg]."""
-        return float(self.inertial.mass)
-
-    @property
-    def reach(self) -> float:
-        """From the centre of mass to the farthest point drawn [m]."""
-        return float(np.linalg.norm(self.looks.points - self.inertial.origin.p, axis=1).max())
-
-    @property
-    def gyration(self) -> float:
-        """The largest radius of gyration [m]."""
-        return float(np.sqrt(max(principal(self.inertial.tensor)[0][-1], 0.0) / self.mass))
+    mass: float
+    gyration: float
+    reach: float
 
 
 def _cases(subject: Subject) -> Iterator[Case]:
     """Links with mass, a tensor, and geometry that could be read."""
     for link, inertial in subject.inertials():
-        if inertial.mass.exact > 0 and any(entry.exact for entry in inertial.entries.values()):
-            looks = subject.looks(link)
-            if looks.known:
-                yield Case(link, inertial, looks)
+        looks = subject.looks(link)
+        if inertial.mass.exact > 0 and not inertial.is_zero and looks.known:
+            mass = float(inertial.mass)
+            gyration = float(np.sqrt(max(principal(inertial.tensor)[0][-1], 0.0) / mass))
+            reach = float(np.linalg.norm(looks.points - inertial.origin.p, axis=1).max())
+            yield Case(link, inertial, looks, mass, gyration, reach)
 
 
 @check("G201", Severity.WARNING)

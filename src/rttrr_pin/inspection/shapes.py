@@ -108,10 +108,8 @@ def looks_of(link: UrdfLink, folder: Path | None) -> Looks:
 
 def _primitive(shape: UrdfShape) -> Box | Cylinder | Sphere | None:
     """The solid; None where its numbers are none, or its tag is unknown."""
-    if shape.tag not in ("box", "cylinder", "sphere"):
-        return None
-    names = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",)}[shape.tag]
     try:
+        names = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",)}[shape.tag]
         sizes = [float(word) for name in names for word in shape.attributes[name].split()]
         if not all(SMALLEST < size < LARGEST for size in sizes):
             return None
@@ -119,7 +117,7 @@ def _primitive(shape: UrdfShape) -> Box | Cylinder | Sphere | None:
             x, y, z = sizes
             return Box((x, y, z))
         return Sphere(*sizes) if shape.tag == "sphere" else Cylinder(*sizes)
-    except (KeyError, ValueError, TypeError):  # an attribute is missing or no number; too few or too many numbers
+    except (KeyError, ValueError, TypeError):  # no such tag or attribute; no number; too few or too many numbers
         return None
 
 

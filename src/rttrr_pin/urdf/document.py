@@ -79,6 +79,11 @@ class UrdfInertial:
         """The symmetric tensor in the inertial frame, each entry converted."""
         return symmetric({name: value(number) for name, number in self.entries.items()})
 
+    @property
+    def is_zero(self) -> bool:
+        """Whether all six entries are zero."""
+        return not any(number.exact for number in self.entries.values())
+
     @cached_property
     def tensor(self) -> Array:
         """The tensor in the axes of the inertial frame, (3, 3) [kg m^2], each entry the nearest double."""
