@@ -18,9 +18,8 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import QUANTITIES, LinkWrenches
 from rttrr_pin.errors import InputError
-from rttrr_pin.exact.intervals import INTERVAL, interval, precision
+from rttrr_pin.exact.intervals import INTERVAL, LoadFrames, flat_dynamics, interval, precision
 from rttrr_pin.exact.parameters import Parameters, exact_parameters
-from rttrr_pin.exact.recursion import LoadFrames, flat_dynamics
 
 PRECISIONS = (128, 256, 512, 1024, 2048, 4096)
 """Bits of the intervals, tried in this order. At 64 bits, which take as long, one state in two is not tight."""
@@ -204,16 +203,10 @@ def enclosing_doubles(x: arb) -> tuple[float, float]:
     middle = float(x)
     if not math.isfinite(middle):
         return middle, middle
-    if x >= middle:
-        if x <= middle:
-            return middle, middle
-        above = math.nextafter(middle, math.inf)
-        if x <= above:
-            return middle, above
-    elif x <= middle:
-        below = math.nextafter(middle, -math.inf)
-        if x >= below:
-            return below, middle
+    below = middle if x >= middle else math.nextafter(middle, -math.inf)
+    above = middle if x <= middle else math.nextafter(middle, math.inf)
+    if x >= below and x <= above:
+        return below, above
     lower, upper = float(x.lower()), float(x.upper())
     while not x >= lower:
         lower = math.nextafter(lower, -math.inf)

@@ -5,25 +5,25 @@ Every operation encloses the exact result, so a result of the recursion encloses
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from fractions import Fraction
+from itertools import islice
 from typing import Any
 
 from flint import arb, ctx, fmpq
 
+from rttrr_pin.core.algebra import Scalar, Vector
+from rttrr_pin.core.dynamics import dynamics
+from rttrr_pin.core.joints.base import Body
+from rttrr_pin.core.model import Model
+from rttrr_pin.core.newton_euler import Payload
 from rttrr_pin.core.scalars import Arithmetic
 
 
-@contextmanager
-def precision(bits: int) -> Iterator[None]:
+def precision(bits: int) -> AbstractContextManager[None]:
     """Compute intervals with midpoints of so many bits."""
-    before = ctx.prec
-    ctx.prec = bits
-    try:
-        yield
-    finally:
-        ctx.prec = before
+    return ctx.workprec(bits)
 
 
 def interval(value: float | Fraction) -> arb:
@@ -33,16 +33,25 @@ def interval(value: float | Fraction) -> arb:
     return arb(float(value))
 
 
-def _sincos(x: Any) -> tuple[arb, arb]:
-    sine, cosine = arb(x).sin_cos()
-    return sine, cosine
-
-
-def _sign(x: Any) -> arb:
-    return arb(x).sgn()
-
-
 INTERVAL = Arithmetic(
-    number=lambda value, error: interval(value), column=lambda x: interval(float(x)), sincos=_sincos, sign=_sign
+    number=lambda value, error: interval(value),
+    column=lambda x: interval(float(x)),
+    sincos=lambda x: arb(x).sin_cos(),
+    sign=lambda x: arb(x).sgn(),
 )
 """Intervals as scalars; the model's numbers are the doubles that it holds."""
+
+LoadFrames = tuple[tuple[int, bool], ...]
+"""Of each payload the link, and whether it is expressed in base axes."""
+
+
+def flat_dynamics(
+    model: Model, arithmetic: Arithmetic, inputs: Sequence[Scalar], frames: LoadFrames, links: Sequence[Body]
+) -> list[Any]:
+    """From q, v, a, then f and n of each payload, to tau, then F, N, f, n link by link, of one state."""
+    values = iter(inputs)
+    q, v, a = (list(islice(values, size)) for size in (model.nq, model.nv, model.nv))
+    payloads = [
+        Payload(link, Vector(*islice(values, 3)), Vector(*islice(values, 3)), in_base) for link, in_base in frames
+    ]
+    return dynamics(model, arithmetic, q, v, a, payloads, links=links).scalars()

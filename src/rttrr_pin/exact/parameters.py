@@ -152,22 +152,19 @@ def _joint(joint: Joint, document: UrdfDocument, exact: Callable[[Number], Fract
 
 def _differences(model: Model, read: Model) -> Iterator[str]:
     """The links and joints of a model that are not those of its file."""
+    if model.floating:
+        read = read.with_floating_base()
     links, joints = {x.name: x for x in read.links}, {x.name: x for x in read.joints}
     for link in model.links:
-        one = links.get(link.name, read.root)
-        if not (link.mass == one.mass and _same((link.com, one.com), (link.inertia, one.inertia))):
+        if not _same(link, links.get(link.name), "mass", "com", "inertia"):
             yield f"link {link.name!r}"
     for joint in model.joints:
-        other = joints.get(joint.name)
-        if other is None:
-            continue
-        mimics = [(x.mimic.multiplier, x.mimic.offset) if x.mimic else () for x in (joint, other)]
-        if not _same((joint.p, other.p), (joint.R, other.R), (joint.axis, other.axis), (mimics[0], mimics[1])):
+        if not _same(joint, joints.get(joint.name), "p", "R", "axis", "mimic"):
             yield f"joint {joint.name!r}"
 
 
-def _same(*pairs: tuple[Any, Any]) -> bool:
-    return all(np.array_equal(x, y) for x, y in pairs)
+def _same(own: object, read: object, *names: str) -> bool:
+    return read is not None and all(np.array_equal(getattr(own, name), getattr(read, name)) for name in names)
 
 
 def _axis(

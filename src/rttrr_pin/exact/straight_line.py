@@ -21,9 +21,8 @@ from rttrr_pin.compile.expression import Graph, Node, Op
 from rttrr_pin.core.dynamics import body_of
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import Arithmetic
-from rttrr_pin.exact.intervals import interval
+from rttrr_pin.exact.intervals import LoadFrames, flat_dynamics, interval
 from rttrr_pin.exact.parameters import Parameters, exact_parameters
-from rttrr_pin.exact.recursion import LoadFrames, flat_dynamics
 
 FORM = {
     Op.ADD: "{} + {}",

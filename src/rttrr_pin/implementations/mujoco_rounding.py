@@ -17,7 +17,6 @@ more for what does not grow with the level.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import mujoco
@@ -34,25 +33,6 @@ FIXED = 2
 """Levels that stand for what does not grow: lengths mended only beyond 1e-15, inertias turned, the way back."""
 
 
-@dataclass(slots=True)
-class Motion:
-    """Sizes of what moves, by body, (N, bodies) each: terms added up in absolute value.
-
-    Attributes:
-        w: angular velocity.
-        v: linear velocity of the field at C.
-        w_dot: angular acceleration.
-        v_dot: linear acceleration of the field at C.
-        rho: lengths from C and from the world's origin to the body's frame.
-    """
-
-    w: Array
-    v: Array
-    w_dot: Array
-    v_dot: Array
-    rho: Array
-
-
 def rounding(
     compiled: Any, qvel: Array, qacc: Array, xpos: Array, C: Array, loads: dict[int, Array]
 ) -> dict[str, Array]:
@@ -67,8 +47,7 @@ def rounding(
         loads: by body, the size of force and moment that act on it, (N, 2).
     """
     parents = [-1, *compiled.body_parentid[1:]]
-    motion = _outwards(compiled, qvel, qacc, xpos, C)
-    w, v, w_dot, v_dot, rho = motion.w, motion.v, motion.w_dot, motion.v_dot, motion.rho
+    w, v, w_dot, v_dot, rho = _outwards(compiled, qvel, qacc, xpos, C)
     mass = np.abs(compiled.body_mass)
     arm = rho + np.linalg.norm(compiled.body_ipos, axis=1)
     tensor = np.linalg.norm(compiled.body_inertia, axis=1)
@@ -87,26 +66,27 @@ def rounding(
     return out | {"f": f, "n": n + rho * f}
 
 
-def _outwards(compiled: Any, qvel: Array, qacc: Array, xpos: Array, C: Array) -> Motion:
-    """Sizes of velocities and accelerations, body by body."""
-    shape = (len(qvel), compiled.nbody)
+def _outwards(compiled: Any, qvel: Array, qacc: Array, xpos: Array, C: Array) -> Array:
+    """Sizes of what moves, terms added up in absolute value: w, v, w_dot, v_dot and rho, (5, N, bodies).
+
+    v and v_dot are those of the body's velocity field at C, and rho is the length of the way from C over the world's
+    origin to the body's frame.
+    """
+    sizes = np.zeros((5, len(qvel), compiled.nbody))
+    w, v, w_dot, v_dot, rho = sizes
+    v_dot[:, 0] = np.linalg.norm(compiled.opt.gravity)
+    rho[:, 0] = norm(C)
     rates, accelerations = (_by_body(compiled, x) for x in (qvel, qacc))
-    motion = Motion(*(np.zeros(shape) for _ in range(5)))
-    motion.v_dot[:, 0] = np.linalg.norm(compiled.opt.gravity)
-    motion.rho[:, 0] = np.linalg.norm(C, axis=1)
-    for body, parent in enumerate(compiled.body_parentid):
-        if body == 0:
-            continue
-        rho = motion.rho[:, parent] + np.linalg.norm(xpos[:, body] - xpos[:, parent], axis=1)
+    for body in range(1, compiled.nbody):
+        p = compiled.body_parentid[body]
         (slid, turned), (slid_a, turned_a) = rates[body], accelerations[body]
-        w = motion.w[:, parent] + turned
-        v = motion.v[:, parent] + slid + rho * turned
-        motion.w_dot[:, body] = motion.w_dot[:, parent] + turned_a + w * turned
-        motion.v_dot[:, body] = (
-            motion.v_dot[:, parent] + slid_a + rho * turned_a + w * (slid + rho * turned) + v * turned
-        )
-        motion.w[:, body], motion.v[:, body], motion.rho[:, body] = w, v, rho
-    return motion
+        rho[:, body] = rho[:, p] + norm(xpos[:, body] - xpos[:, p])
+        w[:, body] = w[:, p] + turned
+        v[:, body] = v[:, p] + slid + rho[:, body] * turned
+        w_dot[:, body] = w_dot[:, p] + turned_a + w[:, body] * turned
+        own = slid + rho[:, body] * turned
+        v_dot[:, body] = v_dot[:, p] + slid_a + rho[:, body] * turned_a + w[:, body] * own + v[:, body] * turned
+    return sizes
 
 
 def _by_body(compiled: Any, x: Array) -> list[tuple[Array, Array]]:

@@ -37,11 +37,13 @@ from rttrr_pin.core.payload import Load
 from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.errors import ImplementationError, ModelMismatchError
-from rttrr_pin.implementations.allowance import norm, of_library
-from rttrr_pin.implementations.library import LibraryJoint, Motion, joint_forces, product, reduce_forces, urdf_of
-from rttrr_pin.implementations.pinocchio_model import differences, pin_joints, pin_links
-from rttrr_pin.implementations.pinocchio_rounding import OPERATIONS, rounding
+from rttrr_pin.implementations.allowance import add_inwards, norm, of_library
+from rttrr_pin.implementations.library import LibraryJoint, Motion, joint_forces, norms, product, reduce_forces, urdf_of
+from rttrr_pin.implementations.pinocchio_model import PinLink, differences, pin_joints, pin_links
 from rttrr_pin.implementations.protocol import Batch, Evaluation
+
+OPERATIONS = 4
+"""Roundings on the way of each term over one joint: a vector product, a sum, a change of frame."""
 
 
 class Pinocchio:
@@ -95,7 +97,7 @@ class Pinocchio:
         whole = record.tau + joint_forces(self.joints, batch, self.pin_model.nv, armature=False)
         tau, tau_joint = (reduce_forces(self.model, self.joints, x) for x in (whole, own))
         values = {"tau": tau, "F": F, "N": N, "f": f, "n": n}
-        cancelling = rounding(self.pin_model, self.links, record.spatial, self._reach(motion))
+        cancelling = _rounding(self.pin_model, self.links, record.spatial, self._reach(motion))
         for i, (links, hanging) in self._held.items():
             if not hanging and not any(self.links[k].massive for k in links):
                 cancelling["f"][:, i] = cancelling["n"][:, i] = 0.0  # nothing but loads acts there
@@ -230,3 +232,42 @@ def _in_cosines(joint: LibraryJoint, q: Array, v: Array, a: Array) -> tuple[Arra
     if joint.joint.type in (CONTINUOUS, PLANAR):
         q = np.hstack([q[:, :-1], np.cos(q[:, -1:]), np.sin(q[:, -1:])])
     return q, v, a
+
+
+def _rounding(pin_model: pin.Model, links: Sequence[PinLink], spatial: Array, reach: Array) -> dict[str, Array]:
+    """What rounds in Pinocchio's formulas and does not occur in ours: sizes times `OPERATIONS` eps, (N, links) each.
+
+    - Spatial accelerations and momenta about the joint's origin O contain terms that cancel in the result: w x v_O in
+      `a_gf`, v_O x m v_O and m |c|^2 (|w_dot| + |w|^2) in the moment.
+    - Rotations about an axis that is not x, y or z itself, -z for one, come from 1 - cos q, so that even what lies
+      along the axis is rounded when it is carried over the joint. Ours carries it over exactly, and its bound knows.
+
+    Sizes add up like the terms: outwards for velocities and accelerations, inwards for forces and moments. `reach` is
+    at most how far a joint's origin is from that of the joint further in, (N, njoints) [m].
+    """
+    v, w = (np.linalg.norm(x, axis=-1) for x in np.split(spatial[:, 1], 2, axis=-1))
+    v_dot, w_dot = (np.linalg.norm(x, axis=-1) for x in np.split(spatial[:, 2], 2, axis=-1))
+    parents = [int(parent) for parent in pin_model.parents]
+    turning = w_dot + w**2
+    acceleration = v_dot + w * v
+    for joint in range(1, len(parents)):
+        turning[:, joint] += turning[:, parents[joint]]
+        acceleration[:, joint] += acceleration[:, parents[joint]] + reach[:, joint] * turning[:, parents[joint]]
+
+    inertias = pin_model.inertias
+    mass = norms(inertia.mass for inertia in inertias)  # a size, also where a file has it negative
+    c, tensor = norms(inertia.lever for inertia in inertias), norms(inertia.inertia for inertia in inertias)
+    force = mass * (acceleration + c * turning)
+    moment = mass * (v**2 + c * acceleration + c**2 * turning) + tensor * turning
+    add_inwards([-1, *parents[1:]], force, moment, reach)
+
+    at = [link.joint for link in links]
+    arm = norms(link.p for link in links)
+    own_arm = arm + norms(link.com for link in links)
+    out = {
+        "F": norms(link.mass for link in links) * (acceleration[:, at] + own_arm * turning[:, at]),
+        "N": norms(link.inertia for link in links) * turning[:, at],
+        "f": force[:, at],
+        "n": moment[:, at] + arm * force[:, at],
+    }
+    return {key: OPERATIONS * EPS * size for key, size in out.items()}

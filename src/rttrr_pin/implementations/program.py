@@ -27,7 +27,7 @@ from rttrr_pin.implementations.allowance import of_printed
 from rttrr_pin.implementations.protocol import Batch, Evaluation, shape_of
 from rttrr_pin.implementations.text_results import (
     Digits,
-    blocks_of,
+    columns_of,
     fewest,
     flattened,
     json_of,
@@ -80,7 +80,7 @@ class Program:
         self.name = shortened(shlex.join(self.words))
         self.model, self.seconds = model, seconds
         self._child: _Child | None = None
-        self._blocks = blocks_of(model)
+        self._columns = columns_of(model)
         self.quantities: tuple[str, ...] = ()
         trial = Batch(model, *trial_states(model))
         texts = self._replies(trial)
@@ -136,7 +136,7 @@ class Program:
         parts = quantities_of(reply, self.name)
         if self.quantities and set(parts) != set(self.quantities):
             raise _ReplyError(f"replied with {', '.join(parts)}, and with {', '.join(self.quantities)} before")
-        return {key: flattened(value, self._blocks[key], f"{where}: {key}") for key, value in parts.items()}
+        return {key: flattened(value, self._columns[key], f"{where}: {key}") for key, value in parts.items()}
 
 
 class _ReplyError(Exception):

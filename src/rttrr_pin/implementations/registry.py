@@ -18,7 +18,9 @@ from typing import Any, TypeAlias
 from rttrr_pin.core.model import Model
 from rttrr_pin.errors import ImplementationError, InputError, RttrrError, UnknownNameError
 from rttrr_pin.implementations.function import Function
+from rttrr_pin.implementations.program import Program
 from rttrr_pin.implementations.protocol import Implementation
+from rttrr_pin.implementations.table import Table
 
 BUILT_IN = {
     "kernel": "rttrr_pin.implementations.ours:CompiledKernel",
@@ -28,8 +30,6 @@ BUILT_IN = {
     "lagrange": "rttrr_pin.implementations.lagrange:Lagrange",
 }
 """Where the implementation of each name is."""
-
-TABLE, PROGRAM = "rttrr_pin.implementations.table:Table", "rttrr_pin.implementations.program:Program"
 
 EXTRAS = ("mujoco",)
 """Implementations whose library comes with an extra of the same name."""
@@ -74,17 +74,17 @@ def make_implementation(source: Source, model: Model) -> Implementation:
         )
     text = os.fspath(source)
     if text in BUILT_IN:
-        return _imported(BUILT_IN[text], text)(model)
+        return _imported(text)(model)
     for point in metadata.entry_points(group=GROUP):
         if point.name == text:
             return _of_package(point, model)
     if Path(text).suffix.lower() in TABLES:
-        return _imported(TABLE, text)(Path(text), model)
+        return Table(Path(text), model)
     if _is_command(text):
-        return _imported(PROGRAM, text)(text, model)
+        return Program(text, model)
     module, colon, attribute = text.partition(":")
     if colon and all(part.isidentifier() for part in (*module.split("."), *attribute.split("."))):
-        return make_implementation(_of_module(module, attribute), model)
+        return make_implementation(_of_module(text), model)
     raise UnknownNameError("implementation", text, names(), "a program needs its path, such as ./my_id")
 
 
@@ -94,13 +94,12 @@ def _is_command(text: str) -> bool:
         words = shlex.split(text)
     except ValueError:  # a quotation mark without its other half
         return False
-    if not words:
-        return False
-    return (os.sep in words[0] and Path(words[0]).is_file()) or (len(words) > 1 and shutil.which(words[0]) is not None)
+    first = words[0] if words else ""
+    return (os.sep in first and Path(first).is_file()) or (len(words) > 1 and shutil.which(first) is not None)
 
 
-def _imported(place: str, name: str) -> Callable[..., Implementation]:
-    module, attribute = place.split(":")
+def _imported(name: str) -> Callable[..., Implementation]:
+    module, attribute = BUILT_IN[name].split(":")
     try:
         factory: Callable[..., Implementation] = getattr(import_module(module), attribute)
     except ImportError as error:
@@ -114,35 +113,30 @@ def _imported(place: str, name: str) -> Callable[..., Implementation]:
 def _of_package(point: metadata.EntryPoint, model: Model) -> Implementation:
     """What another package registered."""
     try:
-        made: Implementation = point.load()(model)
+        implementation: Implementation = point.load()(model)
     except RttrrError:
         raise
     except Exception as error:
         raise ImplementationError(
             f"implementation {point.name!r} ({point.value}) cannot be made: {type(error).__name__}: {error}"
         ) from error
-    if not isinstance(made, Implementation):
+    if not isinstance(implementation, Implementation):
         raise ImplementationError(
-            f"implementation {point.name!r} ({point.value}) is a {type(made).__name__}: "
+            f"implementation {point.name!r} ({point.value}) is a {type(implementation).__name__}: "
             "expected one with name, version, quantities and evaluate"
         )
-    return made
+    return implementation
 
 
-def _of_module(module: str, attribute: str) -> Any:
+def _of_module(text: str) -> Any:
     """A name in a module of the user's, which may lie in the current folder."""
     folder = str(Path.cwd())
     if folder not in sys.path:
         sys.path.insert(0, folder)
     try:
-        value: Any = import_module(module)
-        for part in attribute.split("."):
-            value = getattr(value, part)
+        return metadata.EntryPoint(text, text, GROUP).load()
     except Exception as error:  # the user's own code runs here
-        raise ImplementationError(
-            f"{module}:{attribute} cannot be imported: {type(error).__name__}: {error}"
-        ) from error
-    return value
+        raise ImplementationError(f"{text} cannot be imported: {type(error).__name__}: {error}") from error
 
 
 def make_references(sources: Source | Sequence[Source], model: Model) -> list[Implementation]:

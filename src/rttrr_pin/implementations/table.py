@@ -19,7 +19,7 @@ from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.errors import ImplementationError, InputError, RttrrError, UnknownNameError, shortened
 from rttrr_pin.implementations.allowance import norm, of_printed
 from rttrr_pin.implementations.protocol import Batch, Evaluation, kernel_of, shape_of
-from rttrr_pin.implementations.text_results import Digits, blocks_of, column_names, fewest, flattened, json_of, number
+from rttrr_pin.implementations.text_results import Digits, column_names, columns_of, fewest, flattened, json_of, number
 
 STATE = ("q", "v", "a")
 
@@ -226,18 +226,16 @@ def _split(name: str, line_number: int, line: str, separator: str) -> list[str]:
 
 def _json_lines(path: Path, model: Model) -> tuple[Texts, list[int]]:
     """One object a line, with the request and the reply of a program in it (docs/notation.md)."""
-    names, blocks, numbers = column_names(model), blocks_of(model), []
+    names, blocks, numbers = column_names(model), columns_of(model), []
     columns: Texts = {}
     for line_number, line in _lines_of(path):
         where = f"{path.name}, line {line_number}"
         try:
             entry = json_of(line)
             given = [key for key in names if isinstance(entry, dict) and key in entry]
-            row = {
-                column: text
-                for key in given
-                for column, text in zip(names[key], flattened(entry[key], blocks[key], f"{where}, {key}"), strict=True)
-            }
+            row: dict[str, str] = {}
+            for key in given:
+                row |= zip(names[key], flattened(entry[key], blocks[key], f"{where}, {key}"), strict=True)
         except ValueError as error:
             raise InputError(f"{where}: {error}") from error
         except RttrrError as error:

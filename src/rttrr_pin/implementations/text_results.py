@@ -11,6 +11,7 @@ from typing import Any, TypeAlias
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.wrench import LINK_QUANTITIES, QUANTITIES
 from rttrr_pin.errors import ImplementationError, UnknownNameError, shortened
@@ -20,8 +21,8 @@ NOT_FINITE = re.compile(r"\b(nan|inf)\b")
 FULL = 16
 """Significant digits from which a printed number stands for one float64."""
 
-Blocks: TypeAlias = Sequence[tuple[str, int]]
-"""What numbers belong to, and how many each has: joints with their coordinates, links with x, y, z."""
+Columns: TypeAlias = Mapping[str, Sequence[str]]
+"""By joint or link the names of its numbers in one array."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,22 +82,20 @@ def fewest(digits: Iterable[Digits]) -> int | None:
     return min((own.significant for own in digits if not own.full), default=None)
 
 
-def blocks_of(model: Model) -> dict[str, Blocks]:
-    """By name of a state's or a result's array, what its numbers belong to."""
-    rates = [(joint.name, joint.nv) for joint in model.moving]
-    links = [(name, 3) for name in model.link_names]
-    coordinates = [(joint.name, joint.nq) for joint in model.moving]
-    of_joints: dict[str, Blocks] = {"q": coordinates, "v": rates, "a": rates, "tau": rates}
-    return of_joints | dict.fromkeys(LINK_QUANTITIES, links)
+def columns_of(model: Model) -> dict[str, Columns]:
+    """By name of a state's or a result's array, the columns of a table: `q_joint_1`, ..., `n_tool_z`."""
+    q, v = ({joint.name: labels(joint) for joint in model.moving} for labels in (Joint.q_labels, Joint.v_labels))
+    links = {link: [f"{link}_{axis}" for axis in "xyz"] for link in model.link_names}
+    arrays = {"q": q, "v": v, "a": v, "tau": v} | dict.fromkeys(LINK_QUANTITIES, links)
+    return {
+        key: {name: [f"{key}_{label}" for label in labels] for name, labels in columns.items()}
+        for key, columns in arrays.items()
+    }
 
 
 def column_names(model: Model) -> dict[str, list[str]]:
-    """By name of a state's or a result's array, the columns of a table: `q_joint_1`, ..., `n_tool_z`."""
-    joints = {"q": model.q_names, "v": model.v_names, "a": model.v_names, "tau": model.v_names}
-    names = {key: [f"{key}_{label}" for label in labels] for key, labels in joints.items()}
-    return names | {
-        key: [f"{key}_{link}_{axis}" for link in model.link_names for axis in "xyz"] for key in LINK_QUANTITIES
-    }
+    """The same in order, without joints and links."""
+    return {key: [name for names in columns.values() for name in names] for key, columns in columns_of(model).items()}
 
 
 def number(text: str) -> float:
@@ -125,7 +124,7 @@ def json_of(line: str) -> Any:
         raise ValueError(f"{shortened(line.strip())!r} is no JSON: {error}") from None
 
 
-def flattened(value: object, blocks: Blocks, where: str) -> list[str]:
+def flattened(value: object, columns: Columns, where: str) -> list[str]:
     """The texts of numbers of a JSON value: a list, nested or not, or an object by joint or link.
 
     Raises:
@@ -133,15 +132,14 @@ def flattened(value: object, blocks: Blocks, where: str) -> list[str]:
         UnknownNameError: a joint or link that the robot has not.
     """
     if not isinstance(value, Mapping):
-        return _counted(value, sum(width for _, width in blocks), where)
-    names = [name for name, _ in blocks]
+        return _counted(value, sum(map(len, columns.values())), where)
     for name in value:
-        if name not in names:
-            raise UnknownNameError("joint or link", name, names, f"{where} has one entry for each")
-    missing = [name for name in names if name not in value]
+        if name not in columns:
+            raise UnknownNameError("joint or link", name, columns, f"{where} has one entry for each")
+    missing = [name for name in columns if name not in value]
     if missing:
         raise ImplementationError(f"{where} lacks {', '.join(missing)}: write one entry for each")
-    return [text for name, width in blocks for text in _counted(value[name], width, f"{where} of {name}")]
+    return [text for name, own in columns.items() for text in _counted(value[name], len(own), f"{where} of {name}")]
 
 
 def quantities_of(reply: object, who: str) -> dict[str, object]:
