@@ -355,17 +355,19 @@ def altered(model: Model, what: str) -> Model:
         joints[2] = replace(joints[2], axis=-joints[2].axis)
     elif what == "R":
         joints[2] = replace(joints[2], R=joints[2].R @ np.diag([-1.0, -1.0, 1.0]))
+    elif what == "name":
+        joints[2] = replace(joints[2], name="other")
     else:
         joints[2] = replace(joints[2], p=joints[2].p + 0.1)
     return replace(model, links=tuple(links), joints=tuple(joints))
 
 
 @pytest.mark.parametrize("name", ["rttrr", "any-axes"])
-@pytest.mark.parametrize("what", ["mass", "tensor", "com", "axis", "R", "p"])
+@pytest.mark.parametrize("what", ["mass", "tensor", "com", "axis", "R", "p", "name"])
 def test_a_model_that_was_altered_is_not_its_file(name: str, what: str) -> None:
     robot = rttrr_pin.load(EXAMPLES.get(name, name))
     zeros = np.zeros(robot.model.nv)
-    kind = "joint" if what in ("axis", "R", "p") else "link"
+    kind = "joint" if what in ("axis", "R", "p", "name") else "link"
     with pytest.raises(InputError, match=f"{kind} .* is not what its file says.*altered since"):
         Robot(altered(robot.model, what)).enclose(zeros, zeros, zeros, parameters="text")
 
