@@ -57,14 +57,14 @@ def block(job: tuple[str, int, int]) -> tuple[str, int, dict[str, tuple[int, np.
     computed = bounded(states.q, states.v, states.a, payload=wrench, threads=1)
     tau = alone(states.q, states.v, states.a, payload=wrench, threads=1)
     computed |= {ALONE: tau["tau"], f"{ALONE}_bound": tau["tau_bound"]}
-    program = straight_line(robot.model, tuple((load.link, load.in_base) for load in states.loads), "doubles")
+    prepare, columns = straight_line(robot.model, tuple((load.link, load.in_base) for load in states.loads), "doubles")
     inputs = np.hstack([states.q, states.v, states.a, *(x for load in states.loads for x in (load.f, load.n))])
     ends = np.cumsum([0, *(computed[quantity][0].size for quantity in COLUMNS)])
     values, bounds = (np.hstack([computed[q + end].reshape(count, -1) for q in COLUMNS]) for end in ("", "_bound"))
-    results = [*program.columns, *program.columns[: robot.model.nv]]
+    results = [*columns, *columns[: robot.model.nv]]
     errors, kept = np.empty_like(values), np.empty(values.shape, dtype=bool)
     with precision(BITS):
-        run = program.prepared()
+        run = prepare()
         for row, state in enumerate(inputs.tolist()):
             truth = run(state)
             distances = [abs(truth[k] - x) for k, x in zip(results, values[row].tolist(), strict=True)]

@@ -95,12 +95,8 @@ class Adjudication:
 
 def nearest(enclosures: Enclosures, computed: Mapping[str, Array]) -> dict[str, Array]:
     """Of each enclosure of a computed quantity the value that is nearest to what was computed; its middle for NaN."""
-    values = {}
-    for key, enclosure in enclosures.items():
-        if key in computed:
-            x = computed[key]
-            values[key] = np.where(np.isnan(x), enclosure.mid, np.clip(x, enclosure.lower, enclosure.upper))
-    return values
+    pairs = {key: (computed[key], enclosure) for key, enclosure in enclosures.items() if key in computed}
+    return {key: np.where(np.isnan(x), own.mid, np.clip(x, own.lower, own.upper)) for key, (x, own) in pairs.items()}
 
 
 def walk(model: Model) -> Iterator[tuple[str, int]]:

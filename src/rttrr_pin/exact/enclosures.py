@@ -18,7 +18,7 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import QUANTITIES, LinkWrenches
 from rttrr_pin.errors import InputError
-from rttrr_pin.exact.intervals import INTERVAL, LoadFrames, flat_dynamics, interval, precision
+from rttrr_pin.exact.intervals import INTERVAL, LoadFrames, Run, flat_dynamics, interval, precision
 from rttrr_pin.exact.parameters import Parameters, exact_parameters
 
 PRECISIONS = (128, 256, 512, 1024, 2048, 4096)
@@ -175,9 +175,6 @@ def _enclosed(
     return lower, upper, bits, tight
 
 
-Run = Callable[[Sequence[float]], list[arb]]
-
-
 def _recursion(
     model: Model, frames: LoadFrames, parameters: Parameters, rows: int
 ) -> tuple[Callable[[], Run], NDArray[np.intp]]:
@@ -185,8 +182,7 @@ def _recursion(
     if rows >= STRAIGHT_LINE_FROM:
         from rttrr_pin.exact.straight_line import straight_line  # loads the compiler
 
-        program = straight_line(model, frames, parameters)
-        return program.prepared, program.columns
+        return straight_line(model, frames, parameters)
 
     def prepare() -> Run:
         exact, links = model, bodies(model, INTERVAL)

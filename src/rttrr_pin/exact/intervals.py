@@ -5,7 +5,7 @@ Every operation encloses the exact result, so a result of the recursion encloses
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import AbstractContextManager
 from fractions import Fraction
 from itertools import islice
@@ -43,6 +43,9 @@ INTERVAL = Arithmetic(
 
 LoadFrames = tuple[tuple[int, bool], ...]
 """Of each payload the link, and whether it is expressed in base axes."""
+
+Run = Callable[[Sequence[float]], list[arb]]
+"""Evaluates a state: from q, v, a, then f and n of each payload, to intervals of all results."""
 
 
 def flat_dynamics(

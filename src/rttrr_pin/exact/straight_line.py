@@ -21,7 +21,7 @@ from rttrr_pin.compile.expression import Graph, Node, Op
 from rttrr_pin.core.dynamics import body_of
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import Arithmetic
-from rttrr_pin.exact.intervals import LoadFrames, flat_dynamics, interval
+from rttrr_pin.exact.intervals import LoadFrames, Run, flat_dynamics, interval
 from rttrr_pin.exact.parameters import Parameters, exact_parameters
 
 FORM = {
@@ -32,6 +32,9 @@ FORM = {
     Op.SIGN: "{}.sgn()",
 }
 """Each operation on intervals, in Python; sine and cosine come as a pair."""
+
+StraightLine = tuple[Callable[[], Run], NDArray[np.intp]]
+"""What prepares, at the precision in force, the evaluation of states; and for each number the index of its result."""
 
 
 @dataclass(eq=False)
@@ -60,33 +63,8 @@ class ExactGraph(Graph):
         return super().function(op, x)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class StraightLineProgram:
-    """Two lists of operations: `prepare` for the robot's parameters, `run` for each state.
-
-    Attributes:
-        constants: the robot's parameters, and whether 1 / sqrt of them is wanted.
-        prepare: from intervals of the constants to those that `run` reads.
-        run: from these and a state's numbers to the distinct results.
-        columns: for each number of tau, F, N, f, n the index of its result.
-        operations: the number of operations of `run`.
-    """
-
-    constants: tuple[tuple[Fraction, bool], ...]
-    prepare: Callable[[list[arb]], list[arb]]
-    run: Callable[[list[arb], list[arb]], list[arb]]
-    columns: NDArray[np.intp]
-    operations: int
-
-    def prepared(self) -> Callable[[Sequence[float]], list[arb]]:
-        """A function from a state's numbers to its results, at the precision in force."""
-        constants = [interval(value).rsqrt() if root else interval(value) for value, root in self.constants]
-        fixed, run = self.prepare(constants), self.run
-        return lambda state: run(fixed, [arb(x) for x in state])
-
-
 @lru_cache(maxsize=16)
-def straight_line(model: Model, frames: LoadFrames, parameters: Parameters) -> StraightLineProgram:
+def straight_line(model: Model, frames: LoadFrames, parameters: Parameters) -> StraightLine:
     """Record the recursion of a robot, whose inputs are q, v, a, then f and n of each payload."""
     graph = ExactGraph()
     width = model.nq + 2 * model.nv + 6 * len(frames)
@@ -112,7 +90,7 @@ def straight_line(model: Model, frames: LoadFrames, parameters: Parameters) -> S
     return _program(graph, {node: square for square, node in root_inputs.items()}, width, results)
 
 
-def _program(graph: Graph, squares: dict[int, Fraction], width: int, results: list[int]) -> StraightLineProgram:
+def _program(graph: Graph, squares: dict[int, Fraction], width: int, results: list[int]) -> StraightLine:
     """Compile the recorded graph to Python functions; `squares` are those whose inverse roots are inputs."""
     order = graph.reachable(results)
     constants = [x for x in order if graph.op[x] is Op.CONSTANT or x in squares]
@@ -120,21 +98,26 @@ def _program(graph: Graph, squares: dict[int, Fraction], width: int, results: li
     for x in order:
         if graph.op[x] is not Op.INPUT and fixed.issuperset(graph.args[x]):
             fixed.add(x)
-    prepared = [x for x in order if x in fixed.difference(constants)]
+    preparing = [x for x in order if x in fixed.difference(constants)]
     varying = [x for x in order if x not in fixed and graph.op[x] is not Op.INPUT]
     distinct = list(dict.fromkeys(results))
     operands = {y for x in varying for y in graph.args[x]} | set(distinct)
     handed = [x for x in order if x in fixed and x in operands]
     lines = [
-        *_function("prepare", [constants], _operations(graph, prepared), handed),
+        *_function("prepare", [constants], _operations(graph, preparing), handed),
         *_function("run", [handed, range(width)], _operations(graph, varying), distinct),
     ]
     namespace: dict[str, Any] = {}
     exec(compile("\n".join(lines), "<straight-line program>", "exec"), namespace)
-    values = tuple((squares[x], True) if x in squares else (Fraction(graph.value[x]), False) for x in constants)
+    prepare, run = namespace["prepare"], namespace["run"]
+    values = [(squares[x], True) if x in squares else (Fraction(graph.value[x]), False) for x in constants]
     column = {x: k for k, x in enumerate(distinct)}
-    columns = np.array([column[x] for x in results], dtype=np.intp)
-    return StraightLineProgram(values, namespace["prepare"], namespace["run"], columns, len(varying))
+
+    def prepared() -> Run:
+        numbers = prepare([interval(value).rsqrt() if root else interval(value) for value, root in values])
+        return lambda state: run(numbers, [arb(x) for x in state])
+
+    return prepared, np.array([column[x] for x in results], dtype=np.intp)
 
 
 def _function(name: str, inputs: Sequence[Sequence[int]], body: Iterator[str], results: Sequence[int]) -> Iterator[str]:

@@ -70,8 +70,8 @@ def of_library(
         cancelling: by quantity (F, N, f, n), (N, links): the rounding of terms that only the library's formulas have.
     """
     wide = {
-        key: norm(getattr(batch.bounds, key)) + np.abs(cancelling[key]) + HANDOVER * _finite(norm(values[key]))
-        for key in LINK_QUANTITIES
+        key: norm(getattr(batch.bounds, key)) + np.abs(cancelling[key]) + HANDOVER * np.where(np.isfinite(x), x, 0.0)
+        for key, x in ((key, norm(values[key])) for key in LINK_QUANTITIES)
     }
     return {"tau": _of_carriers(batch.model, wide) + HANDOVER * np.abs(own)} | wide
 

@@ -27,7 +27,6 @@ class Function:
 
     Attributes:
         name: the function's own.
-        version: empty.
         quantities: what it returned when it was tried.
     """
 

@@ -38,7 +38,6 @@ from rttrr_pin.core.energy import (
     payload_power,
     potential_energy,
 )
-from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import payloads_of
 from rttrr_pin.core.scalars import Arithmetic, columns
@@ -98,23 +97,15 @@ def lagrange(
     T = kinetic_energy(links, moving)
     p = [part_of(T, j) for j in n]
     p_dot = [part_of(x, TIME) for x in p]
-    slope = _slope(model, links, q, v, arithmetic)
+    gravity = Vector.of(model.gravity, lambda value: arithmetic.number(value, 0.0))
+    at_rates = moving_links(model, links, tangent(model.moving, q, arithmetic), v, inner)
+    lagrangian = kinetic_energy(links, at_rates) - potential_energy(links, at_rates, gravity)
+    slope = [part_of(lagrangian, j) for j in n]  # d_j (T - V)
     turning = gyroscopic(model, v, [value_of(x) for x in p])
     states = joint_states(model, arithmetic, q, v, a)
     effects = joint_effects_power(model, arithmetic, states, joint_states(model, outer, q_o, v_o, a))
     surroundings = payload_power(payloads, moving)
     tau_joint = [value_of(part_of(effects, j)) for j in n]
-    given = [value_of(part_of(surroundings, j)) for j in n]
-    tau = [p_dot[j] - slope[j] + turning[j] + given[j] + tau_joint[j] for j in n]
+    payload = [value_of(part_of(surroundings, j)) for j in n]
+    tau = [p_dot[j] - slope[j] + turning[j] + payload[j] + tau_joint[j] for j in n]
     return tau, tau_joint
-
-
-def _slope(
-    model: Model, links: Sequence[Body], q: Sequence[Scalar], v: Sequence[Scalar], arithmetic: Arithmetic
-) -> list[Scalar]:
-    """d_j (T - V): derivatives by the configuration, along each rate, the rates held."""
-    gravity = Vector.of(model.gravity, lambda value: arithmetic.number(value, 0.0))
-    duals = over_duals(arithmetic)
-    moving = moving_links(model, links, tangent(model.moving, q, arithmetic), v, duals)
-    lagrangian = kinetic_energy(links, moving) - potential_energy(links, moving, gravity)
-    return [part_of(lagrangian, j) for j in range(model.nv)]

@@ -119,12 +119,12 @@ def reduce_forces(model: Model, joints: Sequence[LibraryJoint], forces: Array) -
 
 
 def product(matrix: Array, vectors: Array) -> Array:
-    """Matrix times vector for each row of (N, 3); the matrix is (3, 3), or one for each row, (N, 3, 3).
+    """Matrices times vectors, (..., 3, 3) and (..., 3), whose leading axes broadcast.
 
     Written out, since a matrix product of the whole batch rounds by its size, and a state must give the same bits in
     any batch.
     """
-    x, y, z = (vectors[:, k, None] for k in range(3))
+    x, y, z = (vectors[..., k, None] for k in range(3))
     return matrix[..., :, 0] * x + matrix[..., :, 1] * y + matrix[..., :, 2] * z
 
 

@@ -24,8 +24,8 @@ is a constraint that holds still what it can.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
+from typing import Any, NamedTuple
 
 import mujoco
 import numpy as np
@@ -34,12 +34,18 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joints import FLOATING, PLANAR
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
+from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import QUANTITIES
-from rttrr_pin.implementations.allowance import of_library
+from rttrr_pin.implementations.allowance import add_inwards, levels, norm, of_library
 from rttrr_pin.implementations.library import LibraryJoint, Motion, joint_forces, product, reduce_forces
 from rttrr_pin.implementations.mujoco_model import PREFIX, build, mujoco_joints, rotation_of
-from rttrr_pin.implementations.mujoco_rounding import rounding
 from rttrr_pin.implementations.protocol import Batch, Evaluation
+
+OPERATIONS = 4
+"""Roundings in eps on the way of each term over one level: a quaternion product, its matrix, a sum."""
+
+FIXED = 2
+"""Levels that stand for what does not grow: lengths mended only beyond 1e-15, inertias turned, the way back."""
 
 
 class Mujoco:
@@ -60,6 +66,7 @@ class Mujoco:
         self.compiled = build(model)
         self.joints = mujoco_joints(model, self.compiled)
         self.bodies = [self.compiled.body(PREFIX + name).id for name in model.link_names]
+        self.axes = np.array([rotation_of(self.compiled.body_iquat[body]) for body in self.bodies]).reshape(-1, 3, 3)
         self.data = mujoco.MjData(self.compiled)
 
     def evaluate(self, batch: Batch) -> Evaluation:
@@ -68,13 +75,11 @@ class Mujoco:
         convert = partial(_in_slides, turns)
         motion = Motion.of(self.joints, batch, self.compiled.nq, self.compiled.nv, convert)
         record = self._run(motion, batch.loads)
-        F, N = self._net(record)
-        f, n = self._across_joints(record)
         own = joint_forces(self.joints, batch, self.compiled.nv)
         whole = self._in_links(record.tau, turns) + own
         tau, tau_joint = (reduce_forces(self.model, self.joints, x) for x in (whole, own))
-        values = {"tau": tau, "F": F, "N": N, "f": f, "n": n}
-        cancelling = self._rounding(record, motion, batch.loads)
+        values = {"tau": tau} | self._wrenches(record)
+        cancelling = _rounding(self.compiled, self.bodies, motion, record, batch.loads)
         return Evaluation(values, of_library(batch, values, tau_joint, cancelling), tau_joint)
 
     def _run(self, motion: Motion, loads: Sequence[Load]) -> _Record:
@@ -121,66 +126,35 @@ class Mujoco:
                 out[:, slides] = product(back, _in_space(tau[:, slides]))[:, : slides.stop - slides.start]
         return out
 
-    def _net(self, record: _Record) -> tuple[Array, Array]:
-        """F, N: mass times acceleration of the centre of mass, and Euler's equation about it."""
-        F, N = (np.empty((len(record.tau), len(self.bodies), 3)) for _ in "FN")
-        for i, body in enumerate(self.bodies):
-            turn = np.swapaxes(record.xmat[:, body], 1, 2)
-            w, v = np.split(record.cvel[:, body], 2, axis=-1)
-            w_dot, v_dot = np.split(record.cacc[:, body], 2, axis=-1)
-            c = record.xipos[:, body] - record.C
-            # cacc is a spatial acceleration, about C: w x v makes it that of the point at the centre of mass.
-            at_com = v_dot + np.cross(w_dot, c) + np.cross(w, v + np.cross(w, c))
-            F[:, i] = self.compiled.body_mass[body] * product(turn, at_com)
-            axes = rotation_of(self.compiled.body_iquat[body])
-            w, w_dot = (product(axes.T, product(turn, x)) for x in (w, w_dot))
-            moments = self.compiled.body_inertia[body]
-            N[:, i] = product(axes, moments * w_dot + np.cross(w, moments * w))
-        return F, N
-
-    def _across_joints(self, record: _Record) -> tuple[Array, Array]:
-        """f, n: what crosses each joint, moving or fixed."""
-        f, n = (np.empty((len(record.tau), len(self.bodies), 3)) for _ in "fn")
-        for i, body in enumerate(self.bodies):
-            moment, force = np.split(record.cfrc_int[:, body], 2, axis=-1)
-            turn = np.swapaxes(record.xmat[:, body], 1, 2)
-            f[:, i] = product(turn, force)
-            n[:, i] = product(turn, moment + np.cross(record.C - record.xpos[:, body], force))
-        return f, n
-
-    def _rounding(self, record: _Record, motion: Motion, loads: Sequence[Load]) -> dict[str, Array]:
-        """What MuJoCo's formulas round beyond ours, of each link."""
-        sizes: dict[int, Array] = {}
-        for load in loads:
-            size = np.stack([np.broadcast_to(np.linalg.norm(x, axis=-1), len(motion.q)) for x in (load.f, load.n)], 1)
-            sizes[self.bodies[load.link]] = sizes.get(self.bodies[load.link], 0.0) + size
-        out = rounding(self.compiled, motion.v, motion.a, record.xpos, record.C, sizes)
-        return {key: x[:, self.bodies] for key, x in out.items()}
+    def _wrenches(self, record: _Record) -> dict[str, Array]:
+        """F, N: mass times acceleration of the centre of mass, and Euler's equation; f, n: what crosses each joint."""
+        bodies, axes = self.bodies, self.axes
+        turn, C = np.swapaxes(record.xmat[:, bodies], -1, -2), record.C[:, None]
+        w, v = np.split(record.cvel[:, bodies], 2, axis=-1)
+        w_dot, v_dot = np.split(record.cacc[:, bodies], 2, axis=-1)
+        c = record.xipos[:, bodies] - C
+        # cacc is a spatial acceleration, about C: w x v makes it that of the point at the centre of mass.
+        at_com = v_dot + np.cross(w_dot, c) + np.cross(w, v + np.cross(w, c))
+        F = self.compiled.body_mass[bodies, None] * product(turn, at_com)
+        w, w_dot = (product(np.swapaxes(axes, -1, -2), product(turn, x)) for x in (w, w_dot))
+        moments = self.compiled.body_inertia[bodies]
+        N = product(axes, moments * w_dot + np.cross(w, moments * w))
+        moment, force = np.split(record.cfrc_int[:, bodies], 2, axis=-1)
+        n = product(turn, moment + np.cross(C - record.xpos[:, bodies], force))
+        return {"F": F, "N": N, "f": product(turn, force), "n": n}
 
 
-@dataclass(slots=True)
-class _Record:
-    """What is kept of a batch, in world axes, by body.
+class _Record(NamedTuple):
+    """What is kept of a batch, in world axes, by body."""
 
-    Attributes:
-        tau: of every joint moving by itself, (N, nv).
-        xpos: origins of the frames of the links, (N, bodies, 3).
-        xipos: centres of mass, (N, bodies, 3).
-        xmat: maps vectors of the links' frames to the world, (N, bodies, 3, 3).
-        cvel: spatial velocities about C, angular before linear, (N, bodies, 6).
-        cacc: spatial accelerations, with gravity, likewise.
-        cfrc_int: moment about C and force that cross the joint of each body, likewise.
-        C: the robot's centre of mass, (N, 3).
-    """
-
-    tau: Array
-    xpos: Array
-    xipos: Array
-    xmat: Array
-    cvel: Array
-    cacc: Array
-    cfrc_int: Array
-    C: Array
+    tau: Array  # of every joint moving by itself, (N, nv)
+    xpos: Array  # origins of the frames of the links, (N, bodies, 3)
+    xipos: Array  # centres of mass, (N, bodies, 3)
+    xmat: Array  # maps vectors of the links' frames to the world, (N, bodies, 3, 3)
+    cvel: Array  # spatial velocities about C, angular before linear, (N, bodies, 6)
+    cacc: Array  # spatial accelerations, with gravity, likewise
+    cfrc_int: Array  # moment about C and force that cross the joint of each body, likewise
+    C: Array  # the robot's centre of mass, (N, 3)
 
 
 def _in_slides(
@@ -208,3 +182,72 @@ def _in_slides(
 def _in_space(x: Array) -> Array:
     """Vectors of the plane or of space, (N, 2) or (N, 3), in space."""
     return np.pad(x, ((0, 0), (0, 3 - x.shape[1])))
+
+
+def _rounding(
+    compiled: Any, bodies: Sequence[int], motion: Motion, record: _Record, loads: Sequence[Load]
+) -> dict[str, Array]:
+    """What rounds in MuJoCo's formulas and does not occur in ours: sizes times eps and operations, (N, links) each.
+
+    MuJoCo computes in world axes, about one point C for the whole robot, its centre of mass.
+
+    - Orientations are quaternions, multiplied up from the root. Each level turns by a rounded rotation, and the length
+      is mended only where it is off by more than 1e-15, that is 4.5 eps, which counts twice in the matrix. So vectors
+      that go from link to world and back, and every part that a link adds, are off by some eps for each level above.
+    - Positions are world coordinates, added up from the root. A lever is the difference of two.
+    - Velocities, accelerations and momenta are spatial, about C: of a link at a distance rho they contain w rho,
+      w_dot rho, m rho^2 w_dot, v x m v, which cancel in the moment about the link's own origin.
+
+    Sizes add up like the terms: outwards for velocities and accelerations, inwards for forces and moments. Levers count
+    with all the lengths that they were added up from, and each link's part counts once for each level, and `FIXED`
+    times more for what does not grow with the level.
+    """
+    parents = [-1, *compiled.body_parentid[1:]]
+    w, v, w_dot, v_dot, rho = _outwards(compiled, motion, record)
+    mass = np.abs(compiled.body_mass)
+    arm = rho + np.linalg.norm(compiled.body_ipos, axis=1)
+    tensor = np.linalg.norm(compiled.body_inertia, axis=1)
+    turning = w_dot + w**2
+    force = mass * (v_dot + w * v + arm * turning)
+    own_moment = tensor * turning
+    moment = own_moment + mass * (v**2 + arm * (v_dot + 2 * w * v) + arm**2 * turning)
+
+    weight = OPERATIONS * EPS * (levels(parents) - 1 + FIXED)
+    out = {"F": weight * force, "N": weight * own_moment}
+    f, n = weight * force, weight * moment
+    for load in loads:
+        body, f_load, n_load = bodies[load.link], norm(np.atleast_2d(load.f)), norm(np.atleast_2d(load.n))
+        f[:, body] += weight[body] * f_load
+        n[:, body] += weight[body] * (n_load + arm[:, body] * f_load)
+    add_inwards(parents, f, n, np.zeros_like(rho))  # all moments are about C
+    return {key: x[:, bodies] for key, x in (out | {"f": f, "n": n + rho * f}).items()}
+
+
+def _outwards(compiled: Any, motion: Motion, record: _Record) -> Array:
+    """Sizes of what moves, terms added up in absolute value: w, v, w_dot, v_dot and rho, (5, N, bodies).
+
+    v and v_dot are those of the body's velocity field at C, and rho is the length of the way from C over the world's
+    origin to the body's frame.
+    """
+    sizes = np.zeros((5, len(motion.q), compiled.nbody))
+    w, v, w_dot, v_dot, rho = sizes
+    v_dot[:, 0] = np.linalg.norm(compiled.opt.gravity)
+    rho[:, 0] = norm(record.C)
+    rates, accelerations = (_by_body(compiled, x) for x in (motion.v, motion.a))
+    for body in range(1, compiled.nbody):
+        p = compiled.body_parentid[body]
+        (slid, turned), (slid_a, turned_a) = rates[body], accelerations[body]
+        rho[:, body] = rho[:, p] + norm(record.xpos[:, body] - record.xpos[:, p])
+        w[:, body] = w[:, p] + turned
+        v[:, body] = v[:, p] + slid + rho[:, body] * turned
+        w_dot[:, body] = w_dot[:, p] + turned_a + w[:, body] * turned
+        own = slid + rho[:, body] * turned
+        v_dot[:, body] = v_dot[:, p] + slid_a + rho[:, body] * turned_a + w[:, body] * own + v[:, body] * turned
+    return sizes
+
+
+def _by_body(compiled: Any, x: Array) -> list[tuple[Array, Array]]:
+    """The norms of what slides and of what turns, for each body, (N,) each."""
+    slides = compiled.jnt_type[compiled.dof_jntid] == mujoco.mjtJoint.mjJNT_SLIDE
+    of_bodies = [compiled.dof_bodyid == body for body in range(compiled.nbody)]
+    return [(norm(x[:, of_body & slides]), norm(x[:, of_body & ~slides])) for of_body in of_bodies]

@@ -78,13 +78,13 @@ def build(model: Model) -> Any:
             bodies = {body.name: body for body in spec.bodies}
             if lines := [*_differences(model, bodies), *_mimic_differences(model, spec)]:
                 raise ModelMismatchError("MuJoCo", lines)
-            read = {name: _Inertial(body) for name, body in bodies.items() if name.startswith(PREFIX)}
+            inertials = {name: _inertial(body) for name, body in bodies.items() if name.startswith(PREFIX)}
             _prepare(spec, model, bodies)
             compiled = spec.compile()
         except ValueError as error:
             raise ImplementationError(f"MuJoCo refuses the URDF of {model.name!r}: {str(error).strip()}") from error
-    for name, inertial in read.items():
-        inertial.write(compiled, compiled.body(name).id)
+    for name, inertial in inertials.items():
+        _write(compiled, compiled.body(name).id, *inertial)
     compiled.opt.gravity[:] = model.gravity
     _complete(compiled)
     return compiled
@@ -115,36 +115,24 @@ def unit(x: Any) -> Array:
     return divided
 
 
-class _Inertial:
-    """Mass, centre and tensor of a body, in link axes, as MuJoCo read them.
+def _inertial(body: Any) -> tuple[float, Array, Array]:
+    """Mass [kg], centre [m] and tensor about it [kg m^2] of a body, in link axes, as MuJoCo read them."""
+    xx, yy, zz, xy, xz, yz = np.nan_to_num(np.array(body.fullinertia))  # nan: the file has no <inertial>
+    R = rotation_of(body.iquat)
+    turned = R @ np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]) @ R.T
+    return float(body.mass), np.nan_to_num(np.array(body.ipos)), (turned + turned.T) / 2
 
-    Attributes:
-        mass: [kg].
-        com: from the link's origin to the centre of mass [m].
-        inertia: about the centre of mass [kg m^2].
-    """
 
-    def __init__(self, body: Any) -> None:
-        self.mass = float(body.mass)
-        self.com: Array = np.nan_to_num(np.array(body.ipos))  # nan: the file has no <inertial>
-        xx, yy, zz, xy, xz, yz = np.nan_to_num(np.array(body.fullinertia))
-        tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-        R = rotation_of(body.iquat)
-        turned = R @ tensor @ R.T
-        self.inertia: Array = (turned + turned.T) / 2
-
-    def write(self, compiled: Any, number: int) -> None:
-        """Into the compiled model."""
-        moments, axes = np.linalg.eigh(self.inertia)
-        if not (self.inertia - np.diag(np.diag(self.inertia))).any():
-            moments, axes = np.diag(self.inertia), np.eye(3)
-        axes[:, 2] *= np.sign(np.linalg.det(axes))
-        quaternion = np.empty(4)
-        mujoco.mju_mat2Quat(quaternion, axes.ravel())
-        compiled.body_mass[number] = self.mass
-        compiled.body_ipos[number] = self.com
-        compiled.body_inertia[number] = moments
-        compiled.body_iquat[number] = unit(quaternion)
+def _write(compiled: Any, body: int, mass: float, com: Array, tensor: Array) -> None:
+    """Into the compiled model."""
+    moments, axes = np.linalg.eigh(tensor)
+    if not (tensor - np.diag(np.diag(tensor))).any():
+        moments, axes = np.diag(tensor), np.eye(3)
+    axes[:, 2] *= np.sign(np.linalg.det(axes))
+    quaternion = np.empty(4)
+    mujoco.mju_mat2Quat(quaternion, axes.ravel())
+    compiled.body_mass[body], compiled.body_ipos[body] = mass, com
+    compiled.body_inertia[body], compiled.body_iquat[body] = moments, unit(quaternion)
 
 
 @contextmanager
@@ -185,9 +173,7 @@ def _differences(model: Model, bodies: dict[str, Any]) -> Iterator[str]:
         return
     for i, (joint, link) in enumerate(zip(model.joints, model.links, strict=True)):
         body = bodies[PREFIX + link.name]
-        inertial = _Inertial(body)
-        read = inertial.mass, inertial.com, inertial.inertia
-        yield from inertia_differences(link, (link.mass, link.com, link.inertia), read)
+        yield from inertia_differences(link, (link.mass, link.com, link.inertia), _inertial(body))
         if not (model.floating and i == 0):
             yield from _joint_differences(model, joint, body)
 

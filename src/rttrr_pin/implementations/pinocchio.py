@@ -25,7 +25,7 @@ body, whichever link of it they hang on, and none if the body is the universe: i
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
@@ -80,6 +80,10 @@ class Pinocchio:
         for joint in self.joints:
             self.pin_model.armature[joint.v] = joint.joint.effects.armature
         self.links = pin_links(model, self.pin_model)
+        self._mass = np.array([link.mass for link in self.links])
+        self._com = np.array([link.p + link.R @ link.com for link in self.links])
+        self._to_link = np.array([link.R.T for link in self.links])
+        self._tensor = np.array([link.inertia for link in self.links])
         self.data = self.pin_model.createData()
         self._held = {i: self._held_by(i) for i, link in enumerate(self.links) if link.fixed}
         hanging = {joint for _, joints in self._held.values() for joint in joints}
@@ -143,17 +147,15 @@ class Pinocchio:
 
     def _net(self, record: _Record) -> tuple[Array, Array]:
         """F, N: mass times acceleration of the centre of mass, and Euler's equation about it."""
-        F, N = (np.empty((len(record.tau), len(self.links), 3)) for _ in "FN")
-        for i, link in enumerate(self.links):
-            v, w = np.split(record.spatial[:, 1, link.joint], 2, axis=-1)
-            v_dot, w_dot = np.split(record.spatial[:, 2, link.joint], 2, axis=-1)
-            c = link.p + link.R @ link.com
-            # a_gf is a spatial acceleration: w x v makes it that of the point at the origin.
-            at_com = v_dot + np.cross(w, v) + np.cross(w_dot, c) + np.cross(w, np.cross(w, c))
-            F[:, i] = product(link.R.T, link.mass * at_com)
-            w, w_dot = product(link.R.T, w), product(link.R.T, w_dot)
-            N[:, i] = product(link.inertia, w_dot) + np.cross(w, product(link.inertia, w))
-        return F, N
+        at = [link.joint for link in self.links]
+        v, w = np.split(record.spatial[:, 1, at], 2, axis=-1)
+        v_dot, w_dot = np.split(record.spatial[:, 2, at], 2, axis=-1)
+        c, R_T, I = self._com, self._to_link, self._tensor
+        # a_gf is a spatial acceleration: w x v makes it that of the point at the origin.
+        at_com = v_dot + np.cross(w, v) + np.cross(w_dot, c) + np.cross(w, np.cross(w, c))
+        F = product(R_T, self._mass[:, None] * at_com)
+        w, w_dot = product(R_T, w), product(R_T, w_dot)
+        return F, product(I, w_dot) + np.cross(w, product(I, w))
 
     def _across_joints(self, record: _Record, F: Array, N: Array, loads: Sequence[Load]) -> tuple[Array, Array, Array]:
         """f, n: what crosses each joint, moving or fixed; and the moments that round on the way, (N, links).
@@ -212,19 +214,12 @@ class Pinocchio:
         return out
 
 
-@dataclass(slots=True)
-class _Record:
-    """What is kept of a batch.
+class _Record(NamedTuple):
+    """What is kept of a batch."""
 
-    Attributes:
-        tau: of every joint moving by itself, (N, nv).
-        spatial: data.f, data.v, data.a_gf of each joint, linear before angular, (N, 3, njoints, 6).
-        hanging: data.liMi of the joints that hang on fixed links: the columns of R, then p, (N, joints, 4, 3).
-    """
-
-    tau: Array
-    spatial: Array
-    hanging: Array
+    tau: Array  # of every joint moving by itself, (N, nv)
+    spatial: Array  # data.f, data.v, data.a_gf of each joint, linear before angular, (N, 3, njoints, 6)
+    hanging: Array  # data.liMi of the joints that hang on fixed links: the columns of R, then p, (N, joints, 4, 3)
 
 
 def _in_cosines(joint: LibraryJoint, q: Array, v: Array, a: Array) -> tuple[Array, Array, Array]:

@@ -28,9 +28,9 @@ from rttrr_pin.implementations.protocol import Batch, Evaluation, shape_of
 from rttrr_pin.implementations.text_results import (
     Digits,
     columns_of,
-    fewest,
     flattened,
     json_of,
+    judged_at,
     number,
     quantities_of,
     trial_states,
@@ -54,8 +54,7 @@ class Program:
 
     Attributes:
         name: the command.
-        version: empty.
-        quantities: those of tau, F, N, f, n that it replied with when it was tried.
+        quantities: those that it replied with when it was tried.
         digits: the significant digits that it is judged at; None where it prints all that float64 has.
         note: the same as a sentence; empty where all digits are there.
     """
@@ -86,10 +85,7 @@ class Program:
         texts = self._replies(trial)
         self.quantities = tuple(key for key in QUANTITIES if key in texts[0])
         self._digits = {key: Digits.of(text for reply in texts for text in reply[key]) for key in self.quantities}
-        self.digits = fewest(self._digits.values())
-        self.note = (
-            f"{self.name} is judged at {self.digits} digits, as it prints them" if self.digits is not None else ""
-        )
+        self.digits, self.note = judged_at(self.name, self._digits.values(), "it prints them")
 
     def evaluate(self, batch: Batch) -> Evaluation:
         """What the program replies, state by state.

@@ -19,7 +19,15 @@ from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.errors import ImplementationError, InputError, RttrrError, UnknownNameError, shortened
 from rttrr_pin.implementations.allowance import norm, of_printed
 from rttrr_pin.implementations.protocol import Batch, Evaluation, kernel_of, shape_of
-from rttrr_pin.implementations.text_results import Digits, column_names, columns_of, fewest, flattened, json_of, number
+from rttrr_pin.implementations.text_results import (
+    Digits,
+    column_names,
+    columns_of,
+    flattened,
+    json_of,
+    judged_at,
+    number,
+)
 
 STATE = ("q", "v", "a")
 
@@ -39,8 +47,7 @@ class Table:
 
     Attributes:
         name: the file's.
-        version: empty.
-        quantities: those of tau, F, N, f, n that it has columns of.
+        quantities: those that it has columns of.
         digits: the significant digits that it is judged at; None where it was printed to all that float64 has.
         note: the same as a sentence; empty where all digits are there.
     """
@@ -61,10 +68,7 @@ class Table:
         self.quantities = tuple(key for key in QUANTITIES if key in names)
         parsed = {key: _numbers(columns, names[key], lines, self.name) for key in names}
         printed = [parsed[key][1] for key in self.quantities]
-        self.digits = fewest(printed)
-        self.note = (
-            f"{self.name} is judged at {self.digits} digits, as it was printed" if self.digits is not None else ""
-        )
+        self.digits, self.note = judged_at(self.name, printed, "it was printed")
         self._halves = {key: digits.half_units(x) for key, (x, digits) in parsed.items()}
         self._states_rounded = self.digits is not None and any(_alike(parsed[key][1], printed) for key in STATE)
         self._values = {key: x for key, (x, _) in parsed.items()}
@@ -121,20 +125,17 @@ class Table:
 
 def _normalise(model: Model, q: Array, half: Array) -> None:
     """Make quaternions that are of length 1 to their digits so to all digits, in place."""
-    at = 0
-    for joint in model.moving:
-        for first in joint.type.quaternions:
-            part = slice(at + first, at + first + 4)
-            length = norm(q[:, part])
-            close = np.abs(length - 1.0) <= 2 * half[:, part].sum(axis=1)
-            q[close, part] /= length[close, None]
-        at += joint.nq
+    for first in model.quaternions:
+        part = slice(first, first + 4)
+        length = norm(q[:, part])
+        close = np.abs(length - 1.0) <= 2 * half[:, part].sum(axis=1)
+        q[close, part] /= length[close, None]
 
 
 def _alike(digits: Digits, printed: Sequence[Digits]) -> bool:
     """Whether the numbers of a state were printed as results were, with as many digits or as many decimals."""
-    fewest = min(printed, key=lambda result: result.significant)
-    return digits.significant >= fewest.significant or digits.decimals >= max(fewest.decimals, 1)
+    result = min(printed, key=lambda own: own.significant)
+    return digits.significant >= result.significant or digits.decimals >= max(result.decimals, 1)
 
 
 def _wanted(columns: Columns, known: Mapping[str, list[str]], name: str) -> dict[str, list[str]]:
@@ -148,14 +149,14 @@ def _wanted(columns: Columns, known: Mapping[str, list[str]], name: str) -> dict
     for column in columns:
         if column not in every and column.partition("_")[0] in known and "_" in column:
             raise UnknownNameError("column", column, every, f"in {name}")
-    given = {key: names for key, names in known.items() if key in STATE or any(c in columns for c in names)}
-    missing = [column for names in given.values() for column in names if column not in columns]
+    wanted = {key: names for key, names in known.items() if key in STATE or any(c in columns for c in names)}
+    missing = [column for names in wanted.values() for column in names if column not in columns]
     if missing:
         more = f" and {len(missing) - 8} more" if len(missing) > 8 else ""
         raise InputError(f"{name} lacks the columns {', '.join(missing[:8])}{more}: see docs/notation.md")
-    if not any(key in QUANTITIES for key in given):
+    if not any(key in QUANTITIES for key in wanted):
         raise InputError(f"{name} has no column of results: add {', '.join(known['tau'][:3])}, ... or F_<link>_x, ...")
-    return given
+    return wanted
 
 
 def _numbers(columns: Columns, names: Sequence[str], lines: Sequence[int], name: str) -> tuple[Array, Digits]:
@@ -226,16 +227,16 @@ def _split(name: str, line_number: int, line: str, separator: str) -> list[str]:
 
 def _json_lines(path: Path, model: Model) -> tuple[Texts, list[int]]:
     """One object a line, with the request and the reply of a program in it (docs/notation.md)."""
-    names, blocks, numbers = column_names(model), columns_of(model), []
+    names, by_name = column_names(model), columns_of(model)
     columns: Texts = {}
+    numbers = []
     for line_number, line in _lines_of(path):
         where = f"{path.name}, line {line_number}"
         try:
             entry = json_of(line)
-            given = [key for key in names if isinstance(entry, dict) and key in entry]
             row: dict[str, str] = {}
-            for key in given:
-                row |= zip(names[key], flattened(entry[key], blocks[key], f"{where}, {key}"), strict=True)
+            for key in names.keys() & (entry if isinstance(entry, dict) else ()):
+                row |= zip(names[key], flattened(entry[key], by_name[key], f"{where}, {key}"), strict=True)
         except ValueError as error:
             raise InputError(f"{where}: {error}") from error
         except RttrrError as error:
