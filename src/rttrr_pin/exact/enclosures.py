@@ -139,8 +139,8 @@ def enclose(
     loads = [flat(load, batch, rows) for load in loads]
     vectors = [np.broadcast_to(x, (rows, 3)) for load in loads for x in (load.f, load.n)]
     frames = tuple((load.link, load.in_base) for load in loads)
-    lower, upper, bits, tight = _enclosed(model, np.hstack([q, v, a, *vectors]), frames, parameters)
-    ends = [split_columns(model, end) for end in (lower, upper)]
+    numbers, bits, tight = _enclosed(model, np.hstack([q, v, a, *vectors]), frames, parameters)
+    ends = [split_columns(model, end) for end in numbers]
     for parts in ends:
         check_overflow(LinkWrenches.of(parts | {"tau_joint": parts["tau"]}, model.link_names, model.v_names), q, v, a)
     return Enclosures(
@@ -154,10 +154,10 @@ def enclose(
 
 def _enclosed(
     model: Model, states: Array, frames: LoadFrames, parameters: Parameters
-) -> tuple[Array, Array, NDArray[np.int64], NDArray[np.bool_]]:
-    """Lower and upper ends of all numbers, (N, numbers), the bits that were needed, and which states are tight."""
-    rows, size = len(states), model.nv + 12 * len(model.links)
-    lower, upper = np.zeros((rows, size)), np.zeros((rows, size))
+) -> tuple[Array, NDArray[np.int64], NDArray[np.bool_]]:
+    """Lower and upper ends of all numbers, (2, N, numbers), the bits that were needed, and which states are tight."""
+    rows = len(states)
+    ends = np.zeros((2, rows, model.nv + 12 * len(model.links)))
     bits, tight = np.zeros(rows, dtype=np.int64), np.zeros(rows, dtype=np.bool_)
     pending = np.arange(rows)
     prepare, columns = _recursion(model, frames, parameters, rows)
@@ -168,11 +168,11 @@ def _enclosed(
             run = prepare()
             for row in pending:
                 pairs = [enclosing_doubles(x) for x in run(states[row].tolist())]
-                lower[row], upper[row] = np.array(pairs, dtype=np.float64).reshape(-1, 2)[columns].T
+                ends[:, row] = np.array(pairs, dtype=np.float64).reshape(-1, 2)[columns].T
         bits[pending] = bits_now
-        tight[pending] = _tight(model, lower[pending], upper[pending])
+        tight[pending] = _tight(model, *ends[:, pending])
         pending = pending[~tight[pending]]
-    return lower, upper, bits, tight
+    return ends, bits, tight
 
 
 def _recursion(

@@ -14,14 +14,18 @@ Three rules, from most to least that is known of a program:
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.dynamics import joint_states
+from rttrr_pin.core.joints import JointType
 from rttrr_pin.core.model import Model
-from rttrr_pin.core.scalars import EPS
+from rttrr_pin.core.scalars import EPS, FLOAT
 from rttrr_pin.core.wrench import LINK_QUANTITIES, LinkWrenches
-from rttrr_pin.implementations.library import norms, own_slices
+from rttrr_pin.implementations.library import norms
 from rttrr_pin.implementations.protocol import Batch
 
 HANDOVER = 4 * EPS
@@ -29,6 +33,9 @@ HANDOVER = 4 * EPS
 
 OPERATIONS = 8
 """Roundings of each term at each level of the tree: a change of frame, a vector product, sums."""
+
+SIZES = replace(FLOAT, number=lambda value, error: abs(value))
+"""Floats, of which numbers of the model count in absolute value."""
 
 Carrier = tuple[float, str, int]
 """Weight, quantity (f or n) and link of a vector that a driving force is a component of."""
@@ -105,15 +112,12 @@ def sizes(batch: Batch) -> dict[str, Array]:
     w, v, w_dot, a, reach = (np.zeros(shape) for _ in range(5))
     gravity = np.full(rows, float(np.linalg.norm(model.gravity)))
     still = np.zeros(rows)
-    for i, (joint, (at_q, at_v)) in enumerate(zip(model.joints, own_slices(model), strict=True)):
+    states = joint_states(model, SIZES, *(list(np.abs(x).T) for x in (batch.q, batch.v, batch.a)))
+    for i, (joint, state) in enumerate(zip(model.joints, states, strict=True)):
         p = joint.parent
-        scale = 1.0 if joint.mimic is None else abs(joint.mimic.multiplier)
-        offset = 0.0 if joint.mimic is None else abs(joint.mimic.offset)
-        angular = np.array(joint.type.rotations, dtype=bool)
-        turn, slide = (scale * norm(batch.v[:, at_v][:, which]) for which in (angular, ~angular))
-        turn_dot, slide_dot = (scale * norm(batch.a[:, at_v][:, which]) for which in (angular, ~angular))
-        moved = scale * norm(batch.q[:, at_q][:, : int((~angular).sum())]) + (offset if not angular.all() else 0.0)
-        reach[:, i] = float(np.linalg.norm(joint.p)) + (moved if (~angular).any() else 0.0)
+        turn, turn_dot = (_length(joint.type, x, True, rows) for x in (state.v, state.a))
+        moved, slide, slide_dot = (_length(joint.type, x, False, rows) for x in (state.q, state.v, state.a))
+        reach[:, i] = float(np.linalg.norm(joint.p)) + moved
         w_p, v_p, w_dot_p, a_p = (
             x[:, p] if p >= 0 else start
             for x, start in zip((w, v, w_dot, a), (still, still, still, gravity), strict=True)
@@ -133,6 +137,12 @@ def sizes(batch: Batch) -> dict[str, Array]:
         n[:, load.link] += norm(np.atleast_2d(load.n))
     add_inwards([joint.parent for joint in model.joints], f, n, reach)
     return {"F": F, "N": N, "f": f, "n": n}
+
+
+def _length(joint: JointType, parts: Sequence[Any], rotates: bool, rows: int) -> Array:
+    """The norm of those coordinates or rates that are angles, or that are not (they come first), (N,)."""
+    own = [x for x, of_angle in zip(parts, joint.rotations, strict=False) if of_angle is rotates]
+    return norm(np.stack(own, axis=-1)) if own else np.zeros(rows)
 
 
 def add_inwards(parents: Sequence[int], f: Array, n: Array, reach: Array) -> None:

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.dynamics import generalised_forces, joint_effects, mimicked
+from rttrr_pin.core.dynamics import generalised_forces, joint_effects, joint_states
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints.base import JointState
 from rttrr_pin.core.model import Link, Model
@@ -36,24 +36,12 @@ class LibraryJoint:
         number: the library's number of it.
         q: where its coordinates are in the library's q.
         v: where its rates are in the library's v, a, tau.
-        own_q: where its coordinates are in our q; of a follower those of the joint it follows.
-        own_v: where its rates are in our v, a, tau; likewise.
     """
 
     joint: Joint
     number: int
     q: slice
     v: slice
-    own_q: slice
-    own_v: slice
-
-    def own(self, batch: Batch) -> tuple[Array, Array, Array]:
-        """Its coordinates, rates and accelerations, (N, its nq) and (N, its nv): a follower's from its leader's."""
-        q, v, a = batch.q[:, self.own_q], batch.v[:, self.own_v], batch.a[:, self.own_v]
-        if self.joint.mimic is not None:
-            state: Any = mimicked(self.joint.mimic, JointState([q], [v], [a]), FLOAT)
-            (q,), (v,), (a,) = state.q, state.v, state.a
-        return q, v, a
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,11 +53,13 @@ class Motion:
     a: Array
 
     @classmethod
-    def of(cls, joints: Sequence[LibraryJoint], batch: Batch, nq: int, nv: int, convert: Convert) -> Motion:
+    def of(
+        cls, joints: Sequence[LibraryJoint], states: Sequence[Any], rows: int, nq: int, nv: int, convert: Convert
+    ) -> Motion:
         """From our coordinates, each joint's by `convert`."""
-        motion = cls(*(np.empty((len(batch), width)) for width in (nq, nv, nv)))
-        for joint in joints:
-            q, v, a = convert(joint, *joint.own(batch))
+        motion = cls(*(np.empty((rows, width)) for width in (nq, nv, nv)))
+        for joint, state in zip(joints, states, strict=True):
+            q, v, a = convert(joint, *(np.stack(x, axis=1) for x in (state.q, state.v, state.a)))
             motion.q[:, joint.q], motion.v[:, joint.v], motion.a[:, joint.v] = q, v, a
         return motion
 
@@ -80,32 +70,27 @@ Convert = Callable[[LibraryJoint, Array, Array, Array], tuple[Array, Array, Arra
 
 def library_joints(model: Model, place: Callable[[Joint, Link], tuple[int, slice, slice]]) -> list[LibraryJoint]:
     """The moving joints, in our order; `place` gives a library's number, q and v of the joint that carries a link."""
-    joints = zip(model.joints, model.links, own_slices(model), strict=True)
-    return [LibraryJoint(joint, *place(joint, link), *own) for joint, link, own in joints if joint.nv]
+    pairs = zip(model.joints, model.links, strict=True)
+    return [LibraryJoint(joint, *place(joint, link)) for joint, link in pairs if joint.nv]
 
 
-def own_slices(model: Model) -> list[tuple[slice, slice]]:
-    """For each joint, where its coordinates and its rates are in ours; those of a follower are its leader's."""
-    slices: dict[int, tuple[slice, slice]] = {}
-    at_q = at_v = 0
-    for i in model.independent:
-        joint = model.joints[i]
-        slices[i] = slice(at_q, at_q + joint.nq), slice(at_v, at_v + joint.nv)
-        at_q, at_v = at_q + joint.nq, at_v + joint.nv
-    none = slice(0, 0), slice(0, 0)
-    return [slices.get(joint.mimic.joint if joint.mimic else i, none) for i, joint in enumerate(model.joints)]
+def own_states(model: Model, batch: Batch) -> list[Any]:
+    """q, v, a of each moving joint by coordinate and rate, (N,) each; a follower's from those of its leader."""
+    states = joint_states(model, FLOAT, *(list(x.T) for x in (batch.q, batch.v, batch.a)))
+    return [state for joint, state in zip(model.joints, states, strict=True) if joint.nv]
 
 
-def joint_forces(joints: Sequence[LibraryJoint], batch: Batch, nv: int, armature: bool = True) -> Array:
-    """The forces that joints take themselves, (N, the library's nv); without armature where a library has it in tau."""
-    forces = np.zeros((len(batch), nv))
-    for joint in joints:
-        _, v, a = joint.own(batch)
+def joint_forces(
+    joints: Sequence[LibraryJoint], states: Sequence[JointState], like: Array, armature: bool = True
+) -> Array:
+    """The forces that joints take themselves, like the library's tau, (N, nv); armature only where that lacks it."""
+    out = np.zeros_like(like)
+    for joint, state in zip(joints, states, strict=True):
         effects = joint.joint.effects if armature else replace(joint.joint.effects, armature=0.0)
-        force: Any
-        (force,) = joint_effects(effects, JointState((), [v], [a]), FLOAT)
-        forces[:, joint.v] = force
-    return forces
+        forces: list[Any] = joint_effects(effects, state, FLOAT)
+        for column, force in zip(out[:, joint.v].T, forces, strict=True):
+            column[:] = force
+    return out
 
 
 def reduce_forces(model: Model, joints: Sequence[LibraryJoint], forces: Array) -> Array:

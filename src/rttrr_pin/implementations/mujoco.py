@@ -37,7 +37,7 @@ from rttrr_pin.core.payload import Load
 from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.implementations.allowance import add_inwards, levels, norm, of_library
-from rttrr_pin.implementations.library import LibraryJoint, Motion, joint_forces, product, reduce_forces
+from rttrr_pin.implementations.library import LibraryJoint, Motion, joint_forces, own_states, product, reduce_forces
 from rttrr_pin.implementations.mujoco_model import PREFIX, build, mujoco_joints, rotation_of
 from rttrr_pin.implementations.protocol import Batch, Evaluation
 
@@ -73,9 +73,10 @@ class Mujoco:
         """tau, F, N, f, n by MuJoCo."""
         turns: dict[int, Array] = {}  # by first rate of each planar or floating joint: from {i} to its frame at zero
         convert = partial(_in_slides, turns)
-        motion = Motion.of(self.joints, batch, self.compiled.nq, self.compiled.nv, convert)
+        states = own_states(self.model, batch)
+        motion = Motion.of(self.joints, states, len(batch), self.compiled.nq, self.compiled.nv, convert)
         record = self._run(motion, batch.loads)
-        own = joint_forces(self.joints, batch, self.compiled.nv)
+        own = joint_forces(self.joints, states, record.tau)
         whole = self._in_links(record.tau, turns) + own
         tau, tau_joint = (reduce_forces(self.model, self.joints, x) for x in (whole, own))
         values = {"tau": tau} | self._wrenches(record)

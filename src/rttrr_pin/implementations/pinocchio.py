@@ -38,7 +38,16 @@ from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.errors import ImplementationError, ModelMismatchError
 from rttrr_pin.implementations.allowance import add_inwards, norm, of_library
-from rttrr_pin.implementations.library import LibraryJoint, Motion, joint_forces, norms, product, reduce_forces, urdf_of
+from rttrr_pin.implementations.library import (
+    LibraryJoint,
+    Motion,
+    joint_forces,
+    norms,
+    own_states,
+    product,
+    reduce_forces,
+    urdf_of,
+)
 from rttrr_pin.implementations.pinocchio_model import PinLink, differences, pin_joints, pin_links
 from rttrr_pin.implementations.protocol import Batch, Evaluation
 
@@ -91,14 +100,15 @@ class Pinocchio:
 
     def evaluate(self, batch: Batch) -> Evaluation:
         """tau, F, N, f, n by Pinocchio; a continuous joint's coordinate is its angle."""
-        motion = Motion.of(self.joints, batch, self.pin_model.nq, self.pin_model.nv, _in_cosines)
+        states = own_states(self.model, batch)
+        motion = Motion.of(self.joints, states, len(batch), self.pin_model.nq, self.pin_model.nv, _in_cosines)
         loads = self._in_link_axes(batch.loads, motion.q)
         record = self._run(motion, loads)
         F, N = self._net(record)
         f, n, moments = self._across_joints(record, F, N, loads)
-        own = joint_forces(self.joints, batch, self.pin_model.nv)
+        own = joint_forces(self.joints, states, record.tau)
         # `rnea` has armature in it, and neither damping nor friction.
-        whole = record.tau + joint_forces(self.joints, batch, self.pin_model.nv, armature=False)
+        whole = record.tau + joint_forces(self.joints, states, record.tau, armature=False)
         tau, tau_joint = (reduce_forces(self.model, self.joints, x) for x in (whole, own))
         values = {"tau": tau, "F": F, "N": N, "f": f, "n": n}
         cancelling = _rounding(self.pin_model, self.links, record.spatial, self._reach(motion))

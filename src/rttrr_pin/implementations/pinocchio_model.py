@@ -99,17 +99,11 @@ def pin_links(model: Model, pin_model: Any) -> list[PinLink]:
             inertia = None  # pin.Inertia refuses tensors that Pinocchio's own reader takes
         else:
             inertia = pin_model.inertias[frame.parentJoint]
-        links.append(
-            PinLink(
-                fixed,
-                int(frame.parentJoint),
-                np.array(frame.placement.rotation),
-                np.array(frame.placement.translation),
-                float(inertia.mass if inertia else link.mass),
-                np.array(inertia.lever if inertia else link.com),
-                np.array(inertia.inertia if inertia else link.inertia),
-            )
-        )
+        mass, com, tensor = link.mass, link.com, link.inertia
+        if inertia is not None:
+            mass, com, tensor = float(inertia.mass), np.array(inertia.lever), np.array(inertia.inertia)
+        R, p = np.array(frame.placement.rotation), np.array(frame.placement.translation)
+        links.append(PinLink(fixed, int(frame.parentJoint), R, p, mass, com, tensor))
     return links
 
 
