@@ -150,6 +150,13 @@ def test_one_name_gives_an_array_and_several_a_dict(rttrr: Robot, name: str) -> 
     np.testing.assert_array_equal(single, listed[name])
 
 
+def test_a_list_of_one_name_gives_a_dict_in_every_call(rttrr: Robot) -> None:
+    """The first call compiles; compiled code takes those after it."""
+    listed, q = rttrr.compile(["tau"]), np.zeros((3, 5))
+    for state in (q, q, q[0], q[0]):
+        assert listed(state, state, state)["tau"].shape == state.shape
+
+
 def test_all_outputs_at_once_in_the_order_asked_for(rttrr: Robot) -> None:
     names = tuple(reversed(QUANTITIES))
     state = some((70,))

@@ -166,7 +166,8 @@ class Kernel(Generic[Result]):
             answer: Result | None = one(q, v, a, *numbers, out)
             return answer
         if out is None:
-            arrays = one(q, v, a, *numbers, *[None] * len(self.outputs))
+            arrays = one(q, v, a, *numbers, *[None] * len(self.outputs))  # of one output, no tuple
+            arrays = (arrays,) if len(self.outputs) == 1 and arrays is not None else arrays
             return None if arrays is None else cast("Result", dict(zip(self.outputs, arrays, strict=True)))
         if type(out) is not dict or out.keys() != set(self.outputs):
             return None
