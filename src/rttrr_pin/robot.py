@@ -9,14 +9,13 @@ from typing import TYPE_CHECKING, Any, cast, overload
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.batch import RESULTS
 from rttrr_pin.core.dynamics import bodies
 from rttrr_pin.core.inputs import Coordinates, coordinates, finite, real
 from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load, Payloads, load_of, loads_of, payload_link
 from rttrr_pin.core.scalars import FLOAT
-from rttrr_pin.core.wrench import LinkWrenches, Wrench
+from rttrr_pin.core.wrench import RESULTS, LinkWrenches, Wrench
 from rttrr_pin.errors import InputError, NumberError, UnknownNameError
 
 if TYPE_CHECKING:

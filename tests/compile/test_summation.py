@@ -170,7 +170,7 @@ def test_fused_operations_round_once(op: Op, expected: float) -> None:
     """(1 + e) (1 - e) - 1 is -e^2, of which nothing is left where the product is rounded."""
     graph = Graph()
     program = Program(
-        graph, (Field("x", (3,)),), (Field("s", (1,)),), (graph.fused(op, *(graph.input(k) for k in range(3))),)
+        graph, (Field("x", (3,)),), (Field("s", (1,)),), (graph.apply(op, [graph.input(k) for k in range(3)]),)
     )
     made = emitter("llvm")
     executable = made.load(made.emit(program), program.inputs, program.outputs)

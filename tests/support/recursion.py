@@ -7,12 +7,12 @@ import math
 import numpy as np
 
 from rttrr_pin import Robot
-from rttrr_pin.core.batch import RESULTS, split_columns
+from rttrr_pin.core.batch import split_columns
 from rttrr_pin.core.dynamics import evaluate
 from rttrr_pin.core.inputs import Coordinates, coordinates
 from rttrr_pin.core.payload import Payloads, loads_of
 from rttrr_pin.core.scalars import FLOAT
-from rttrr_pin.core.wrench import LinkWrenches
+from rttrr_pin.core.wrench import RESULTS, LinkWrenches
 
 
 def recursion(robot: Robot, q: Coordinates, v: Coordinates, a: Coordinates, payload: Payloads = None) -> LinkWrenches:

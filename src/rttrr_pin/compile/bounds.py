@@ -136,7 +136,7 @@ class _Bounder:
         for product, term in ((x.number, y.number), (y.number, x.number)):
             if self.fused and graph.op[product] is Op.MUL and not graph.is_constant(term, 0):
                 first, second = graph.args[product]
-                return Node(graph, graph.fused(Op.FMA, first, second, term))
+                return Node(graph, graph.apply(Op.FMA, (first, second, term)))
         return x + y
 
     def _size(self, x: Node) -> Node:

@@ -13,9 +13,8 @@ from rttrr_pin.compile.program import Program
 from rttrr_pin.compile.quantities import BOUND, QUANTITIES
 from rttrr_pin.compile.register_allocation import arranged
 from rttrr_pin.compile.summation import order_sums
-from rttrr_pin.compile.trace import TRACING, TRACING_WITH_ERRORS, PayloadSlot, inputs_read, outputs_of, record, trace
+from rttrr_pin.compile.trace import TRACING, PayloadSlot, inputs_read, outputs_of, record, trace
 from rttrr_pin.core.model import Model
-from rttrr_pin.core.scalars import Arithmetic
 from rttrr_pin.errors import InputError
 
 STRAIGHT_LINE = 20_000
@@ -69,24 +68,18 @@ def build(
 def _bounded(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot], fused: bool) -> Program:
     """Values and bounds on their rounding."""
     plain = tuple(dict.fromkeys(name.removesuffix(BOUND) for name in outputs))
-    program = _whole(model, plain, payloads, TRACING_WITH_ERRORS, WITH_BOUNDS)
+    program = _whole(model, plain, payloads, with_bounds=True)
     chained = order_sums(program, fused)
     # q comes first among the inputs, so that places in q are places among the inputs
     quaternions = model.quaternions if any(field.name == "q" for field in program.inputs) else ()
     return with_bounds(chained, outputs_of(model, outputs), quaternions, fused)
 
 
-def _whole(
-    model: Model,
-    outputs: Sequence[str],
-    payloads: Sequence[PayloadSlot],
-    arithmetic: Arithmetic = TRACING,
-    growth: int = 1,
-) -> Program:
-    """Straight lines, however long, but no longer than can be compiled once they have so many times the nodes."""
-    most = LONGEST // growth
+def _whole(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot], with_bounds: bool = False) -> Program:
+    """Straight lines, however long, but no longer than can be compiled once they have bounds."""
+    most = LONGEST // WITH_BOUNDS if with_bounds else LONGEST
     try:
-        return trace(model, outputs, payloads, most=most, arithmetic=arithmetic)
+        return trace(model, outputs, payloads, most=most, with_errors=with_bounds)
     except GraphFullError:
         names = [name for name in outputs if not QUANTITIES[name].by_steps] or outputs
         raise InputError(
@@ -102,20 +95,9 @@ def call_program(
     regrouped: bool = True,
     fused: bool = False,
 ) -> CallProgram:
-    """A robot as calls, however large or small it is.
-
-    Args:
-        model: the robot.
-        outputs: names from `QUANTITIES`, of quantities with `by_steps`.
-        payloads: where payloads act.
-        regrouped: whether inertia may be moved between links where that leaves the outputs as they are.
-        fused: whether products may be fused with sums.
-
-    Returns:
-        Calls of steps, with sums in chains.
-    """
+    """A robot as calls, however large or small it is, for quantities with `by_steps`; arguments as of `trace`."""
     outliner = Outliner(Graph())
     arithmetic = replace(TRACING, call=outliner.call)
     results = record(outliner.graph, arithmetic, model, outputs, payloads, regrouped)
-    made = arranged(outliner, results, inputs_read(model, outputs, payloads), outputs_of(model, outputs))
-    return replace(made, steps=tuple(replace(step, program=order_sums(step.program, fused)) for step in made.steps))
+    plain = arranged(outliner, results, inputs_read(model, outputs, payloads), outputs_of(model, outputs))
+    return replace(plain, steps=tuple(replace(step, program=order_sums(step.program, fused)) for step in plain.steps))

@@ -184,13 +184,15 @@ class Graph:
             return inner if op in (Op.COS, Op.ABS) else self.neg(inner)
         return self._node(op, (x,))
 
-    def fused(self, op: Op, x: int, y: int, z: int) -> int:
-        """A product of two factors, as they stand in a node of theirs, with a third number: FMA, FMS or FNMA."""
-        return self._node(op, (x, y, z))
-
     def apply(self, op: Op, args: Sequence[int]) -> int:
         """An operation on nodes of this graph, by its constructor."""
-        return BUILD[op](self, *args)
+        if op in FUSED:
+            return self._node(op, tuple(args))  # a product of two factors, as they stand in a node, with a third number
+        if op in FUNCTIONS:
+            return self.function(op, *args)
+        if op is Op.NEG:
+            return self.neg(*args)
+        return {Op.ADD: self.add, Op.SUB: self.sub, Op.MUL: self.mul}[op](*args)
 
     def reachable(self, outputs: Iterable[int]) -> list[int]:
         """The nodes that the outputs need, in the order of their numbers."""
@@ -220,22 +222,6 @@ def _of_number(op: Op, x: float) -> float:
     if op in (Op.SIN, Op.COS) and isinstance(x, ConstantWithError) and not exactly(x, 0.0):
         return x.function(op.name, value, x.error + 2 * SINE_ULPS * UNIT_ROUNDOFF * abs(value))
     return value
-
-
-BUILD: dict[Op, Callable[..., int]] = {
-    Op.ADD: Graph.add,
-    Op.SUB: Graph.sub,
-    Op.MUL: Graph.mul,
-    Op.NEG: Graph.neg,
-    Op.SIN: lambda graph, x: graph.function(Op.SIN, x),
-    Op.COS: lambda graph, x: graph.function(Op.COS, x),
-    Op.SIGN: lambda graph, x: graph.function(Op.SIGN, x),
-    Op.ABS: lambda graph, x: graph.function(Op.ABS, x),
-    Op.FMA: lambda graph, x, y, z: graph.fused(Op.FMA, x, y, z),
-    Op.FMS: lambda graph, x, y, z: graph.fused(Op.FMS, x, y, z),
-    Op.FNMA: lambda graph, x, y, z: graph.fused(Op.FNMA, x, y, z),
-}
-"""The constructor of each operation."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -22,7 +22,6 @@ from rttrr_pin.compile.trace import PayloadSlot, inputs_read, outputs_of
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import common_shape, overflow
 from rttrr_pin.core.inputs import Coordinates, check_quaternions, coordinates, finite
-from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load, Payloads, loads_of
 from rttrr_pin.core.wrench import Wrench
@@ -111,8 +110,14 @@ class Kernel(Generic[Result]):
             UnknownNameError: there is no such emitter.
             InputError: it writes no source.
         """
-        labels = {name: _labels(name, self.model.moving) for name in self._inputs}
-        return emit.source(emitter, self.program, self.model.name, labels)
+        write = getattr(emit.emitter(emitter), "source", None)
+        if write is None:
+            raise InputError(f"emitter {emitter!r} writes no source for readers: take emitter='c'")
+        text: str = write(self.program, self.model.name, {name: self._labels(name) for name in self._inputs})
+        return text
+
+    def _labels(self, name: str) -> tuple[str, ...]:
+        return self.model.q_names if name == "q" else self.model.v_names
 
     def __call__(
         self,
@@ -178,7 +183,6 @@ class Kernel(Generic[Result]):
         self, q: Any, v: Any, a: Any, payload: Payloads, out: Result | None, wanted_threads: int | None
     ) -> Result:
         """The call for whatever is passed: any outputs and payload, batches, lists, dicts, errors."""
-        threads.count(wanted_threads, 0)  # an error also where nothing is to be computed
         payloads = self._loads(payload)
         variant = self._variant(tuple(PayloadSlot(load.link, load.in_base) for load in payloads))
         if isinstance(payload, Wrench) and not self._floats:
@@ -193,9 +197,15 @@ class Kernel(Generic[Result]):
         rows = prod(batch)
         inputs = [as_rows(x, batch, rows) for x in (*arrays.values(), *numbers.values())]
         targets, results = self._targets(variant, out, batch, rows, inputs)
-        if rows and self._run(variant, inputs, targets, rows, wanted_threads):
+        count = threads.count(wanted_threads, rows * (variant.width_in + variant.width_out))
+        if rows and threads.run(variant.executable.bind(inputs, targets), rows, count):
             self._explain(arrays, numbers, variant, (inputs, targets))
-        return self._returned(results, targets, out)
+        for result, target in zip(results, targets, strict=True):
+            if not np.may_share_memory(result, target):
+                result[...] = target.reshape(result.shape)
+        if out is not None:
+            return out
+        return cast("Result", results[0] if self._single else dict(zip(self.outputs, results, strict=True)))
 
     def _loads(self, payload: Payloads) -> tuple[Load, ...]:
         deaf = [name for name in self.outputs if not QUANTITIES[name].payload]
@@ -215,22 +225,20 @@ class Kernel(Generic[Result]):
             if x is not None:
                 arrays[name] = x if readable(x, self._widths[name]) else coordinates(name, x, self.model.moving)
         if self._floats and "q" in arrays:
-            q = finite("q", np.asarray(arrays["q"], dtype=np.float64), _labels("q", self.model.moving))
+            q = finite("q", np.asarray(arrays["q"], dtype=np.float64), self.model.q_names)
             check_quaternions(q, self.model.moving)
         return arrays
 
     def _variant(self, slots: tuple[PayloadSlot, ...]) -> Variant:
         """The program for payloads there: from this process, from disk, or compiled now."""
-        found = self._variants.get(slots)
-        if found is None:
-            with self._lock:
-                found = self._variants.get(slots)
-                if found is None:
-                    found = self._variants[slots] = self._compiled(slots)
+        if slots not in self._variants:
+            with self._lock:  # one thread compiles, the others wait and find it
+                if slots not in self._variants:
+                    self._variants[slots] = self._compiled(slots)
                     if not slots and not self._floats:
-                        self._without_payload = found.executable.one
+                        self._without_payload = self._variants[slots].executable.one
                         self._one = self._without_payload if self._single else None
-        return found
+        return self._variants[slots]
 
     def _compiled(self, slots: tuple[PayloadSlot, ...]) -> Variant:
         straight_line = self._straight_line if self._emitter.calls else None
@@ -247,50 +255,28 @@ class Kernel(Generic[Result]):
         self, variant: Variant, out: Any, batch: tuple[int, ...], rows: int, inputs: Sequence[NDArray[Any]]
     ) -> tuple[list[Array], list[Array]]:
         """For each output the rows to write, and the array to return."""
-        given = self._given(out)
+        passed: Mapping[str, Any] = {} if out is None else {self.outputs[0]: out} if self._single else out
+        if not self._single and out is not None and (not isinstance(out, Mapping) or set(out) != set(self.outputs)):
+            raise InputError(f"out must be a dict with an array for each of {', '.join(self.outputs)}")
         targets: list[Array] = []
         results: list[Array] = []
         for field in variant.outputs:
             shape = (*batch, *field.shape)
-            mine = given.get(field.name)
-            if mine is not None:
-                check_out(field.name, mine, shape)
-            elsewhere = mine is not None and any(np.may_share_memory(mine, x) for x in inputs)
-            target = None if mine is None or elsewhere else rows_in_place(mine, rows, field.width)
+            own = passed.get(field.name)
+            if own is not None:
+                check_out(field.name, own, shape)
+            elsewhere = own is not None and any(np.may_share_memory(own, x) for x in inputs)
+            target = None if own is None or elsewhere else rows_in_place(own, rows, field.width)
             if target is None:
                 target = np.empty((rows, field.width))
             for other, result in zip(self.outputs, results, strict=False):  # those before it
-                if mine is not None and np.shares_memory(mine, result):
+                if own is not None and np.shares_memory(own, result):
                     raise InputError(
                         f"out for {other} and {field.name} share memory: pass an array of its own for each"
                     )
             targets.append(target)
-            results.append(target.reshape(shape) if mine is None else mine)
+            results.append(target.reshape(shape) if own is None else own)
         return targets, results
-
-    def _given(self, out: Any) -> Mapping[str, Any]:
-        if out is None:
-            return {}
-        if self._single:
-            return {self.outputs[0]: out}
-        if not isinstance(out, Mapping) or set(out) != set(self.outputs):
-            raise InputError(f"out must be a dict with an array for each of {', '.join(self.outputs)}")
-        return out
-
-    def _run(
-        self, variant: Variant, inputs: Sequence[Any], targets: Sequence[Array], rows: int, wanted: int | None
-    ) -> bool:
-        task = variant.executable.bind(inputs, targets)
-        numbers = rows * (variant.width_in + variant.width_out)
-        return threads.run(task, rows, threads.count(wanted, numbers))
-
-    def _returned(self, results: Sequence[Array], targets: Sequence[Array], out: Result | None) -> Result:
-        for result, target in zip(results, targets, strict=True):
-            if not np.may_share_memory(result, target):
-                result[...] = target.reshape(result.shape)
-        if out is not None:
-            return out
-        return cast("Result", results[0] if self._single else dict(zip(self.outputs, results, strict=True)))
 
     def _explain(
         self,
@@ -301,7 +287,7 @@ class Kernel(Generic[Result]):
     ) -> None:
         """Name the number that is not finite, or the state that overflows."""
         for name, x in arrays.items():
-            finite(name, x, _labels(name, self.model.moving))
+            finite(name, x, self._labels(name))
         for name, x in numbers.items():
             finite(name, x)
         inputs, targets = rows
@@ -332,7 +318,3 @@ def _data(x: object) -> object:
 
 UNREAD = {"name", "limits", "dynamics"}
 """What of links and joints no program reads."""
-
-
-def _labels(name: str, joints: Sequence[Joint]) -> list[str]:
-    return [label for joint in joints for label in (joint.q_labels() if name == "q" else joint.v_labels())]

@@ -16,7 +16,7 @@ from typing import Any
 
 from rttrr_pin.compile.call_program import Step
 from rttrr_pin.compile.call_signature import Leaf, answer, arguments, built
-from rttrr_pin.compile.expression import Graph, Node, Op
+from rttrr_pin.compile.expression import FUNCTIONS, Graph, Node, Op
 from rttrr_pin.compile.program import Field, Program, inputs_of
 
 
@@ -37,18 +37,16 @@ class Recorded:
     answer: Hashable
     nodes: list[int]
     live: set[int] = field(default_factory=set)
-    _reads: dict[int, tuple[int, ...]] = field(default_factory=dict)
 
     @cached_property
     def outputs(self) -> tuple[int, ...]:
         """The nodes that are computed; the others are arguments handed back."""
         return tuple(dict.fromkeys(x for x in self.nodes if self.graph.op[x] is not Op.INPUT))
 
-    def reads(self, output: int) -> tuple[int, ...]:
-        """Inputs that an output depends on."""
-        if output not in self._reads:
-            self._reads[output] = inputs_of(self.graph, (self.outputs[output],))
-        return self._reads[output]
+    @cached_property
+    def reads(self) -> tuple[tuple[int, ...], ...]:
+        """For each output the inputs that it depends on."""
+        return tuple(inputs_of(self.graph, (x,)) for x in self.outputs)
 
     @cached_property
     def step(self) -> Step:
@@ -145,7 +143,7 @@ class Outliner:
                 steps[taken.results[0]] = taken
                 needed.update(
                     leaf.number
-                    for place in taken.recorded.reads(output)
+                    for place in taken.recorded.reads[output]
                     if isinstance(leaf := taken.leaves[place], Node)
                 )
         return [steps[first] for first in sorted(steps)]
@@ -161,9 +159,6 @@ SINGLE: dict[Op, Callable[..., Any]] = {
     Op.SUB: operator.sub,
     Op.MUL: operator.mul,
     Op.NEG: operator.neg,
-    Op.SIN: lambda x: x.function(Op.SIN),
-    Op.COS: lambda x: x.function(Op.COS),
-    Op.SIGN: lambda x: x.function(Op.SIGN),
-    Op.ABS: lambda x: x.function(Op.ABS),
+    **{op: operator.methodcaller("function", op) for op in FUNCTIONS},
 }
 """Each operation on scalars."""

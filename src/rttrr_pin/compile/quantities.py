@@ -14,15 +14,11 @@ import numpy as np
 from rttrr_pin.core.algebra import Matrix, Scalar, Vector
 from rttrr_pin.core.dual import Dual, part_of
 from rttrr_pin.core.dynamics import Result, bodies, dynamics
-from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.newton_euler import Payload
 from rttrr_pin.core.scalars import Arithmetic
 from rttrr_pin.core.tangent import over_duals, tangent
-
-INERTIAL_PARAMETERS = ("m", "mx", "my", "mz", "Ixx", "Ixy", "Iyy", "Ixz", "Iyz", "Izz")
-"""Of one link, the tensor about the origin of {i}: the order of Pinocchio's `Inertia.toDynamicParameters`."""
 
 
 @dataclass(frozen=True)
@@ -72,13 +68,9 @@ class Quantity:
     by_steps: bool = True
 
 
-def _flat(vectors: Sequence[Vector]) -> list[Scalar]:
-    return [scalar for vector in vectors for scalar in vector]
-
-
 def _of_links(name: str) -> Quantity:
     return Quantity(
-        "qva", lambda model: (len(model.links), 3), lambda motion: _flat(getattr(motion.result, name)), True, True
+        "qva", lambda model: (len(model.links), 3), lambda motion: motion.result.scalars((name,)), True, of_links=True
     )
 
 
@@ -94,16 +86,6 @@ def _mass_matrix(motion: Motion) -> list[Scalar]:
     rest = [0.0] * n
     columns = [_force_at(motion, rest, [float(i == j) for i in range(n)], gravity=False) for j in range(n)]
     return [columns[max(i, j)][min(i, j)] for i in range(n) for j in range(n)]  # symmetric to the last bit
-
-
-def _nonlinear_effects(motion: Motion) -> list[Scalar]:
-    """What acts at these rates without acceleration: Coriolis, centrifugal, gravity, friction."""
-    return _force_at(motion, motion.v, [0.0] * motion.model.nv)
-
-
-def _gravity_torque(motion: Motion) -> list[Scalar]:
-    """What holds the robot still."""
-    return _force_at(motion, [0.0] * motion.model.nv, [0.0] * motion.model.nv)
 
 
 def _regressor(motion: Motion) -> list[Scalar]:
@@ -130,18 +112,17 @@ def _derivatives(by: str) -> Quantity:
 
     def scalars(motion: Motion) -> list[Scalar]:
         n = motion.model.nv
-        moved = {name: getattr(motion, name) for name in "qva"}
-        seed = tangent if by == "q" else _plain
-        moved[by] = seed(motion.model.moving, moved[by], motion.arithmetic)
+        moved = {"q": motion.q, "v": motion.v, "a": motion.a}
+        if by == "q":
+            moved[by] = tangent(motion.model.moving, motion.q, motion.arithmetic)
+        else:
+            moved[by] = [Dual(value, {k: 1.0}) for k, value in enumerate(moved[by])]
         arithmetic = over_duals(motion.arithmetic)
-        tau = dynamics(motion.model, arithmetic, **moved, payloads=motion.payloads, links=motion.links).tau
+        q, v, a = moved.values()
+        tau = dynamics(motion.model, arithmetic, q, v, a, motion.payloads, motion.links).tau
         return [part_of(row, k) for row in tau for k in range(n)]
 
     return Quantity("qva", lambda model: (model.nv, model.nv), scalars, payload=True, by_steps=False)
-
-
-def _plain(joints: Sequence[Joint], x: Sequence[Scalar], arithmetic: Arithmetic) -> list[Dual]:
-    return [Dual(value, {k: 1.0}) for k, value in enumerate(x)]
 
 
 def _per_joint(model: Model) -> tuple[int, ...]:
@@ -156,8 +137,12 @@ QUANTITIES: dict[str, Quantity] = {
     "n": _of_links("n"),
     "tau_joint": Quantity("qva", _per_joint, lambda motion: motion.result.tau_joint, payload=True),
     "mass_matrix": Quantity("q", lambda model: (model.nv, model.nv), _mass_matrix),
-    "nonlinear_effects": Quantity("qv", _per_joint, _nonlinear_effects),
-    "gravity_torque": Quantity("q", _per_joint, _gravity_torque),
+    "nonlinear_effects": Quantity(
+        "qv", _per_joint, lambda motion: _force_at(motion, motion.v, [0.0] * motion.model.nv)
+    ),
+    "gravity_torque": Quantity(
+        "q", _per_joint, lambda motion: _force_at(motion, (0.0,) * motion.model.nv, (0.0,) * motion.model.nv)
+    ),
     "regressor": Quantity(
         "qva", lambda model: (model.nv, 10 * len(model.links)), _regressor, of_links=True, by_steps=False
     ),
@@ -171,9 +156,5 @@ BOUND = "_bound"
 """What the name of a bound ends with, behind that of what it bounds."""
 
 
-def _bound_of(quantity: Quantity) -> Quantity:
-    """A bound on the rounding of a quantity: `bounds.with_bounds` makes it from the quantity's own operations."""
-    return replace(quantity, by_steps=False)
-
-
-QUANTITIES |= {name + BOUND: _bound_of(quantity) for name, quantity in QUANTITIES.items()}
+QUANTITIES |= {name + BOUND: replace(quantity, by_steps=False) for name, quantity in QUANTITIES.items()}
+# `bounds.with_bounds` makes them from the operations of what they bound.

@@ -14,22 +14,13 @@ from rttrr_pin.compile.program import Field, Program
 def arranged(
     outliner: Outliner, results: Sequence[int], inputs: tuple[Field, ...], outputs: tuple[Field, ...]
 ) -> CallProgram:
-    """The schedule of what was recorded.
-
-    Args:
-        outliner: has seen the robot.
-        results: nodes of its graph, for each number of the outputs.
-        inputs: the arrays that are read.
-        outputs: the arrays that are written.
-
-    Returns:
-        Calls in the order in which the reference recursion took the steps.
-    """
+    """The schedule of what was recorded: calls in the order in which the reference recursion took the steps."""
     taken = outliner.needed(results)
     steps = list(dict.fromkeys((*STANDING, *(one.recorded.step for one in taken))))
     index = {step: k for k, step in enumerate(steps)}
     width = sum(field.width for field in inputs)
-    columns = _Columns(outliner.graph, width, results, _last_reads(taken))
+    last_reads = {x: k for k, one in enumerate(taken) for x in _read(one)}
+    columns = _Columns(outliner.graph, width, results, last_reads)
     calls = [columns.call(k, index[one.recorded.step], one) for k, one in enumerate(taken)]
     rest = [columns.rest(place, x) for place, x in enumerate(results)]
     seen = _seen(taken, results)
@@ -46,11 +37,6 @@ def arranged(
 def _read(one: CallSite) -> list[int]:
     """The nodes in the columns that a step reads."""
     return [leaf.number for place in one.recorded.step.columns if isinstance(leaf := one.leaves[place], Node)]
-
-
-def _last_reads(taken: Sequence[CallSite]) -> dict[int, int]:
-    """The last step that reads each node."""
-    return {x: k for k, one in enumerate(taken) for x in _read(one)}
 
 
 def _seen(taken: Sequence[CallSite], results: Sequence[int]) -> set[int]:
@@ -101,8 +87,8 @@ class _Columns:
             if x not in self.of:
                 self.of[x] = self._column()
         self._release(x for x in live if x not in self.last)  # written because other calls of this step need it
-        given = (one.leaves[place] for place in one.recorded.step.numbers)
-        numbers = tuple(leaf for leaf in given if not isinstance(leaf, Node))
+        leaves = (one.leaves[place] for place in one.recorded.step.numbers)
+        numbers = tuple(leaf for leaf in leaves if not isinstance(leaf, Node))
         return Call(step, columns, numbers, tuple(self.of[x] for x in live))
 
     def _release(self, nodes: Iterable[int]) -> None:
@@ -110,10 +96,9 @@ class _Columns:
         self.free.extend(column for column in columns if column >= self.width + len(self.results))
 
     def _column(self) -> int:
-        if self.free:
-            return self.free.pop()
-        self.count += 1
-        return self.count - 1
+        if not self.free:
+            self.count += 1
+        return self.free.pop() if self.free else self.count - 1
 
     def rest(self, place: int, x: int) -> Call | None:
         """What fills the column of an output that no step wrote."""

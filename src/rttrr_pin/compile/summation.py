@@ -129,9 +129,9 @@ class _Chainer:
             if self.fused and self._is_product(node):
                 x, y = graph.args[node]
                 if subtracted == negative:
-                    total = graph.fused(Op.FMA, x, y, total)
+                    total = graph.apply(Op.FMA, (x, y, total))
                 else:  # total - x y, or x y - total where the sum is the opposite of the total
-                    total = graph.fused(Op.FMS if negative else Op.FNMA, x, y, total)
+                    total = graph.apply(Op.FMS if negative else Op.FNMA, (x, y, total))
                     negative = False
             elif subtracted == negative:
                 total = graph.add(total, node)

@@ -39,7 +39,7 @@ def trace(
     payloads: Sequence[PayloadSlot] = (),
     regrouped: bool = True,
     most: int | None = None,
-    arithmetic: Arithmetic | None = None,
+    with_errors: bool = False,
 ) -> Program:
     """The program of a robot.
 
@@ -49,7 +49,8 @@ def trace(
         payloads: where payloads act.
         regrouped: whether inertia may be moved between links where that leaves the outputs as they are.
         most: nodes to record before giving up; None for any number.
-        arithmetic: `TRACING` or `TRACING_WITH_ERRORS`; None for the former.
+        with_errors: whether numbers of the model carry a bound on their error (`ConstantWithError`), and so do those
+            that they fold into.
 
     Returns:
         The program as the operations of the recursion leave it.
@@ -58,7 +59,8 @@ def trace(
         GraphFullError: it takes more nodes.
     """
     graph = Graph(most=most)
-    results = record(graph, arithmetic or TRACING, model, outputs, payloads, regrouped)
+    arithmetic = TRACING_WITH_ERRORS if with_errors else TRACING
+    results = record(graph, arithmetic, model, outputs, payloads, regrouped)
     return Program(graph, inputs_read(model, outputs, payloads), outputs_of(model, outputs), results)
 
 
@@ -72,16 +74,7 @@ def record(
 ) -> tuple[int, ...]:
     """Run the reference recursion on nodes of a graph, whose first inputs are the numbers of `inputs_read`.
 
-    Args:
-        graph: where to record.
-        arithmetic: `TRACING`, or one made from it.
-        model: the robot.
-        outputs: names from `QUANTITIES`.
-        payloads: where payloads act.
-        regrouped: as in `trace`.
-
-    Returns:
-        The nodes of the outputs' numbers.
+    As `trace`, but that the arithmetic may be one made from `TRACING`. Returns the nodes of the outputs' numbers.
     """
     wanted = [QUANTITIES[name] for name in outputs]
     links: Sequence[Body] | None = None
@@ -89,20 +82,21 @@ def record(
         model, links = regroup(model, bodies(model, arithmetic))
     inputs = inputs_read(model, outputs, payloads)
     columns = (Node(graph, graph.input(place)) for place in range(sum(field.width for field in inputs)))
-    given = {field.name: [next(columns) for _ in range(field.width)] for field in inputs}
+    values = {field.name: [next(columns) for _ in range(field.width)] for field in inputs}
     motion = Motion(
         model,
         arithmetic,
-        given.get("q", []),
-        given.get("v", []),
-        given.get("a", []),
+        values.get("q", []),
+        values.get("v", []),
+        values.get("a", []),
         payloads=[
-            Payload(slot.link, Vector(*given[f"payload_{k}_f"]), Vector(*given[f"payload_{k}_n"]), slot.in_base)
+            Payload(slot.link, Vector(*values[f"payload_{k}_f"]), Vector(*values[f"payload_{k}_n"]), slot.in_base)
             for k, slot in enumerate(payloads)
         ],
         links=links,
     )
-    return tuple(_number(graph, scalar) for quantity in wanted for scalar in quantity.scalars(motion))
+    scalars: list[Any] = [x for quantity in wanted for x in quantity.scalars(motion)]
+    return tuple(x.number if isinstance(x, Node) else graph.constant(x) for x in scalars)
 
 
 def outputs_of(model: Model, outputs: Sequence[str]) -> tuple[Field, ...]:
@@ -118,20 +112,11 @@ def inputs_read(model: Model, outputs: Sequence[str], payloads: Sequence[Payload
     return (*(Field(name, (sizes[name],)) for name in needed), *slots)
 
 
-def _number(graph: Graph, scalar: Any) -> int:
-    """The node of a scalar that may have stayed a plain number."""
-    return scalar.number if isinstance(scalar, Node) else graph.constant(scalar)
-
-
 def _keep(vector: Vector) -> Vector:
     for scalar in vector:
         if isinstance(scalar, Node):
             scalar.graph.kept.add(scalar.number)
     return vector
-
-
-def _value(value: float, error: float) -> float:
-    return value
 
 
 def _sincos(q: Any) -> tuple[Scalar, Scalar]:
@@ -145,8 +130,8 @@ def _sign(x: Any) -> Scalar:
     return x.function(Op.SIGN) if isinstance(x, Node) else float((x > 0) - (x < 0))
 
 
-TRACING = Arithmetic(number=_value, column=lambda x: x, sincos=_sincos, sign=_sign, keep=_keep)
+TRACING = Arithmetic(number=lambda value, error: value, column=lambda x: x, sincos=_sincos, sign=_sign, keep=_keep)
 """The arithmetic that records; numbers of the model stay floats and fold among themselves."""
 
 TRACING_WITH_ERRORS = replace(TRACING, number=ConstantWithError)
-"""The same; numbers of the model carry a bound on their error, and so do those that they fold into."""
+"""The same; numbers of the model carry a bound on their error."""

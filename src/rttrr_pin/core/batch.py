@@ -17,9 +17,6 @@ from rttrr_pin.errors import NumberError, ShapeError
 
 Number = TypeVar("Number", bound=np.generic)
 
-RESULTS = (*QUANTITIES, "tau_joint")
-"""The arrays of `LinkWrenches`."""
-
 
 def blocks(rows: int, size: int) -> Iterator[slice]:
     """Consecutive slices that cover a batch."""

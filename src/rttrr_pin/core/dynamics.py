@@ -5,7 +5,7 @@ Like the recursion this is written once, over scalars of any kind.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import islice
@@ -60,16 +60,7 @@ class Result:
 def evaluate(model: Model, arithmetic: Arithmetic, q: Array, v: Array, a: Array, loads: Sequence[Load] = ()) -> Result:
     """Inverse dynamics of a batch.
 
-    Args:
-        model: the robot.
-        arithmetic: the kind of scalar.
-        q: coordinates, (N, nq) [rad or m]; one state, (1, nq), is computed with Python floats.
-        v: rates, (N, nv).
-        a: accelerations, (N, nv).
-        loads: payloads.
-
-    Returns:
-        The five quantities in scalars of that kind; one that no state changes may be a plain number.
+    q is (N, nq), v and a (N, nv); one state, (1, nq), is computed with Python floats. See `dynamics`.
     """
     q_, v_, a_ = ([arithmetic.column(column) for column in columns(x)] for x in (q, v, a))
     return dynamics(model, arithmetic, q_, v_, a_, payloads_of(loads, arithmetic))
@@ -169,10 +160,6 @@ def generalised_forces(model: Model, arithmetic: Arithmetic, forces: Sequence[Se
 
 def body_of(joint: Joint, link: Link, number: NumberOf) -> Body:
     """One link with its joint, in scalars of one kind."""
-
-    def lift(error: float) -> Callable[[float], Scalar]:
-        return lambda value: number(value, error)
-
     # Rotation matrices from rpy, axes divided by their length and turned tensors are rounded; the rest is as written.
     turned = ROTATION_ERROR if joint.rotated else 0.0
     normalised = AXIS_ERROR if np.count_nonzero(joint.axis) > 1 else 0.0
@@ -180,10 +167,10 @@ def body_of(joint: Joint, link: Link, number: NumberOf) -> Body:
     return Body(
         type=joint.type,
         axis=Vector.of(joint.axis, lambda value: number(value, normalised * abs(value))),
-        R=Matrix.of(joint.R, lift(turned)),
-        p=Vector.of(joint.p, lift(0.0)),
+        R=Matrix.of(joint.R, lambda value: number(value, turned)),
+        p=Vector.of(joint.p, lambda value: number(value, 0.0)),
         M=number(link.mass, 0.0),
-        r_C=Vector.of(link.com, lift(0.0)),
-        I=Matrix.of(link.inertia, lift(turned_tensor)),
+        r_C=Vector.of(link.com, lambda value: number(value, 0.0)),
+        I=Matrix.of(link.inertia, lambda value: number(value, turned_tensor)),
         parameters=tuple(number(x, 0.0) for x in joint.type.parameters),
     )

@@ -45,9 +45,10 @@ def coordinates(name: str, values: Coordinates, joints: Sequence[Joint]) -> Arra
     else:
         array = real(name, values)
         if array.ndim == 0 or array.shape[-1] != len(labels):
+            each = "joint" if all(joint.nq == 1 for joint in joints) else "coordinate"
             got = "no axis" if array.ndim == 0 else f"{array.shape[-1]} values on its last axis"
             raise ShapeError(
-                f"{name} has {got}, expected {len(labels)} ({_listed(labels)}): pass one per {_each(joints)}",
+                f"{name} has {got}, expected {len(labels)} ({_listed(labels)}): pass one per {each}",
                 name=name,
                 got=array.shape,
                 wanted=f"(..., {len(labels)})",
@@ -69,10 +70,7 @@ def vectors(name: str, values: ArrayLike) -> Array:
     if array.ndim == 0 or array.shape[-1] != 3:
         got = "is a single number" if array.ndim == 0 else f"has {array.shape[-1]} values on its last axis"
         raise ShapeError(
-            f"{name} {got}, expected 3 (x, y, z): pass a vector",
-            name=name,
-            got=array.shape,
-            wanted="(..., 3)",
+            f"{name} {got}, expected 3 (x, y, z): pass a vector", name=name, got=array.shape, wanted="(..., 3)"
         )
     return finite(name, array)
 
@@ -98,7 +96,10 @@ def real(name: str, values: ArrayLike) -> Array:
     if array.dtype == object:
         array = _from_objects(name, array)
     if array.dtype.kind in "iu":
-        _check_integers(name, array)
+        inexact = np.argwhere((array > EXACT_INTEGER) | (array < -EXACT_INTEGER))
+        if len(inexact):
+            index = tuple(int(k) for k in inexact[0])
+            raise _too_large(name, index, int(array[index]))
     elif array.dtype.kind != "f" or array.dtype.itemsize > 8:
         kinds = {"b": "bool", "c": "complex", "U": "text", "S": "bytes", "M": "date", "m": "duration"}
         kind = kinds.get(array.dtype.kind, str(array.dtype))
@@ -146,10 +147,6 @@ def finite(name: str, array: Array, labels: Sequence[str] = ()) -> Array:
         index=index,
         value=value,
     )
-
-
-def _each(joints: Sequence[Joint]) -> str:
-    return "joint" if all(joint.nq == 1 for joint in joints) else "coordinate"
 
 
 def check_quaternions(q: Array, joints: Sequence[Joint]) -> None:
@@ -222,7 +219,7 @@ def _from_objects(name: str, array: NDArray[np.object_]) -> Array:
             raise _too_large(name, index, value)
         if not isinstance(value, (int, float)) or isinstance(value, bool):
             raise NumberError(
-                f"{name}[{', '.join(map(str, index))}] is {value!r} ({type(value).__name__}), "
+                f"{name}{list(index)} is {value!r} ({type(value).__name__}), "
                 "expected a real number: convert it with float()",
                 name=name,
                 index=index,
@@ -231,19 +228,10 @@ def _from_objects(name: str, array: NDArray[np.object_]) -> Array:
     return array.astype(np.float64)
 
 
-def _check_integers(name: str, array: NDArray[np.integer]) -> None:
-    """Integers that float64 would round are refused."""
-    too_large = (array > EXACT_INTEGER) | (array < -EXACT_INTEGER)
-    if too_large.any():
-        index = tuple(int(k) for k in np.argwhere(too_large)[0])
-        raise _too_large(name, index, int(array[index]))
-
-
 def _too_large(name: str, index: tuple[int, ...], value: int) -> NumberError:
     digits = str(value) if abs(value) < 10**40 else f"an integer of {len(str(abs(value)))} digits"
     return NumberError(
-        f"{name}[{', '.join(map(str, index))}] is {digits}, "
-        "which float64 cannot hold exactly: pass a float if rounding it is meant",
+        f"{name}{list(index)} is {digits}, which float64 cannot hold exactly: pass a float if rounding it is meant",
         name=name,
         index=index,
         value=value,

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.joints.base import Coordinate, JointType
+from rttrr_pin.core.joints.base import JointType
 from rttrr_pin.errors import InputError
 
 
@@ -128,14 +127,11 @@ class Joint:
 
     def q_labels(self) -> list[str]:
         """Names of its coordinates: its own name, with the slot behind where there are several."""
-        return self._labels(self.type.coordinates)
+        return [f"{self.name}.{own.name}" if own.name else self.name for own in self.type.coordinates]
 
     def v_labels(self) -> list[str]:
         """Names of its rates."""
-        return self._labels(self.type.rates)
-
-    def _labels(self, coordinates: Sequence[Coordinate]) -> list[str]:
-        return [f"{self.name}.{own.name}" if own.name else self.name for own in coordinates]
+        return [f"{self.name}.{own.name}" if own.name else self.name for own in self.type.rates]
 
 
 def frozen(values: Array, shape: tuple[int, ...], name: str) -> Array:

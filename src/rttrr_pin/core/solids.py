@@ -10,7 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import inf, pi
-from typing import Protocol
 
 import numpy as np
 
@@ -20,17 +19,6 @@ from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.errors import InputError
 
 Triple = tuple[float, float, float]
-
-
-class Solid(Protocol):
-    """A homogeneous solid, in a frame at its own centre."""
-
-    @property
-    def volume(self) -> float:
-        """Volume [m^3]."""
-
-    def specific_inertia(self) -> Array:
-        """Inertia about the centre divided by the mass, (3, 3) [m^2], in the solid's own axes."""
 
 
 @dataclass(frozen=True)
@@ -107,6 +95,10 @@ class Sphere:
         return np.eye(3) * (0.4 * self.radius**2)
 
 
+Solid = Box | Cylinder | Sphere
+"""A homogeneous solid, in a frame at its own centre."""
+
+
 @dataclass(frozen=True, eq=False)
 class RigidBody:
     """The ten numbers of a rigid body.
@@ -123,11 +115,7 @@ class RigidBody:
 
     @classmethod
     def of(cls, solid: Solid, density: float) -> RigidBody:
-        """The body that a solid of one density is, in a frame at its centre.
-
-        Args:
-            solid: its shape.
-            density: its density [kg/m^3], positive.
+        """The body that a solid of one density [kg/m^3] is, in a frame at its centre.
 
         Raises:
             InputError: the density is not a positive finite number.
@@ -172,12 +160,11 @@ class Part:
         name: what it is, unique among the parts of a module.
         solid: its shape.
         material: what it is made of.
-        xyz: its centre in the frame that the owner of the part names [m].
-        rpy: its axes in that frame, as in `rotation` [rad].
+        xyz, rpy: its centre [m] and axes [rad] in the frame that the owner of the part names, as in `rotation`.
     """
 
     name: str
-    solid: Box | Cylinder | Sphere
+    solid: Solid
     material: Material
     xyz: Triple
     rpy: Triple = (0.0, 0.0, 0.0)
@@ -188,13 +175,9 @@ class Part:
 
 
 def rotation(rpy: Sequence[float]) -> Array:
-    """The rotation matrix of URDF's roll, pitch, yaw: R = R_z(yaw) R_y(pitch) R_x(roll).
+    """URDF's roll, pitch, yaw about fixed x, y, z [rad] as R = R_z(yaw) R_y(pitch) R_x(roll), (3, 3).
 
-    Args:
-        rpy: roll, pitch and yaw about fixed x, y and z [rad].
-
-    Returns:
-        R, (3, 3): maps vectors of the turned frame to the fixed frame.
+    R maps vectors of the turned frame to the fixed frame.
     """
     (sr, sp, sy), (cr, cp, cy) = np.sin(rpy), np.cos(rpy)
     return np.array(
@@ -211,9 +194,6 @@ def combine(bodies: Iterable[RigidBody]) -> RigidBody:
 
     M = sum m_k; M c = sum m_k c_k; with d = c_k - c, I = sum I_k + m_k (d.d 1 - d d^T) (parallel axes).
     Where bodies overlap, both masses count.
-
-    Args:
-        bodies: at least one body; all in the same frame.
 
     Raises:
         InputError: there is no body.

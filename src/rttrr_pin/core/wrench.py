@@ -19,6 +19,9 @@ LINK_QUANTITIES = ("F", "N", "f", "n")
 QUANTITIES = ("tau", *LINK_QUANTITIES)
 """What is compared, in the order of reports."""
 
+RESULTS = (*QUANTITIES, "tau_joint")
+"""The arrays of `LinkWrenches`."""
+
 
 @dataclass(frozen=True, eq=False)
 class Wrench:
@@ -70,7 +73,6 @@ class LinkWrenches:
         N: net moment on the link about its centre of mass, (..., links, 3) [N m].
         f: force that the parent link exerts on the link, (..., links, 3) [N].
         n: moment that the parent link exerts on the link, about the origin of {i}, (..., links, 3) [N m].
-        links: the names along the links axis.
         tau_joint: the part of tau that the joint itself takes (armature, friction), which its bearing does not carry.
         links: the names along the links axis.
         joints: the names along the last axis of tau.
@@ -88,7 +90,7 @@ class LinkWrenches:
     @classmethod
     def of(cls, parts: Mapping[str, Array], links: tuple[str, ...], joints: tuple[str, ...]) -> LinkWrenches:
         """The five quantities by name, with the names along their axes."""
-        return cls(**{key: parts[key] for key in ("tau", *LINK_QUANTITIES, "tau_joint")}, links=links, joints=joints)
+        return cls(**{key: parts[key] for key in RESULTS}, links=links, joints=joints)
 
     def at(self, name: str) -> dict[str, Array]:
         """What acts at one link, by quantity; for the name of a moving joint, `{"tau": ...}`.
@@ -120,5 +122,5 @@ class LinkWrenches:
                 got=self.tau.shape,
                 wanted="(..., nv) with a batch axis in front",
             )
-        parts = {key: value[index] for key, value in self.items()} | {"tau_joint": self.tau_joint[index]}
-        return LinkWrenches.of(parts, self.links, self.joints)
+        parts = {key: getattr(self, key)[index] for key in RESULTS}
+        return LinkWrenches(**parts, links=self.links, joints=self.joints)

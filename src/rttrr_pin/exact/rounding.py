@@ -22,12 +22,12 @@ import numpy as np
 
 from rttrr_pin.core.algebra import Scalar
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.batch import RESULTS, split_columns
+from rttrr_pin.core.batch import split_columns
 from rttrr_pin.core.dynamics import dynamics
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load, payloads_of
 from rttrr_pin.core.scalars import SINE_ULPS, SLACK, UNIT_ROUNDOFF, Arithmetic, columns
-from rttrr_pin.core.wrench import LinkWrenches
+from rttrr_pin.core.wrench import RESULTS, LinkWrenches
 
 Real: TypeAlias = Any  # float | Array: what NumPy's stubs cannot combine without casts
 

@@ -7,9 +7,8 @@ from importlib import metadata
 
 import numpy as np
 
-from rttrr_pin.core.batch import RESULTS
 from rttrr_pin.core.model import Model
-from rttrr_pin.core.wrench import QUANTITIES
+from rttrr_pin.core.wrench import QUANTITIES, RESULTS
 from rttrr_pin.errors import NumberError
 from rttrr_pin.implementations.allowance import of_bounds
 from rttrr_pin.implementations.protocol import Batch, Evaluation, kernel_of, shape_of

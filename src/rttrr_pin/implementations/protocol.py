@@ -12,10 +12,9 @@ import numpy as np
 
 from rttrr_pin.compile.kernel import Kernel
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.batch import RESULTS
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
-from rttrr_pin.core.wrench import LINK_QUANTITIES, LinkWrenches
+from rttrr_pin.core.wrench import LINK_QUANTITIES, RESULTS, LinkWrenches
 from rttrr_pin.errors import NumberError
 from rttrr_pin.exact.rounding import bounded_dynamics
 

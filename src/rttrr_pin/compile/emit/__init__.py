@@ -6,7 +6,7 @@ is one new file and one line here.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import Any, Protocol
 
@@ -109,32 +109,18 @@ def emitter(name: str | None = None) -> Emitter:
         InputError: its compiler is not installed.
     """
     if name is None:
-        return next(found for found in map(_importable, EMITTERS) if found is not None)
+        return next(own for own in map(_importable, EMITTERS) if own is not None)
     if name not in EMITTERS:
         raise UnknownNameError("emitter", name, EMITTERS)
-    found = _importable(name)
-    if found is None:
+    own = _importable(name)
+    if own is None:
         raise InputError(f"emitter {name!r} cannot be imported: pip install rttrr-pin again, or take emitter='numpy'")
-    return found
-
-
-def source(name: str, program: Program, robot: str, labels: Mapping[str, Sequence[str]]) -> str:
-    """A program as text for readers and other programs, from an emitter that has a function `source` as well.
-
-    Raises:
-        UnknownNameError: there is no emitter of that name.
-        InputError: it writes none.
-    """
-    write = getattr(emitter(name), "source", None)
-    if write is None:
-        raise InputError(f"emitter {name!r} writes no source for readers: take emitter='c'")
-    text: str = write(program, robot, labels)
-    return text
+    return own
 
 
 def _importable(name: str) -> Emitter | None:
     try:
-        made: Emitter = import_module(f"{__name__}.{name}").emitter()
+        own: Emitter = import_module(f"{__name__}.{name}").emitter()
     except ImportError:
         return None
-    return made
+    return own

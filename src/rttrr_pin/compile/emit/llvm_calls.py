@@ -33,14 +33,14 @@ def calls(call_program: CallProgram, layout: Layout) -> str:
 
 def _tables(call_program: CallProgram, layout: Layout) -> Iterator[str]:
     """Rows and numbers as bytes, which take no time to read."""
-    rows = [x for call in call_program.calls for x in (call.step, *_offsets((*call.columns, *call.results), layout))]
+    rows = [
+        x
+        for call in call_program.calls
+        for x in (call.step, *(column * layout.pitch for column in (*call.columns, *call.results)))
+    ]
     numbers = [x for call in call_program.calls for x in call.numbers]
     yield _constant("rows", struct.pack(f"<{len(rows) + 1}I", *rows, END))
     yield _constant("numbers", struct.pack(f"<{len(numbers)}d", *numbers))
-
-
-def _offsets(columns: tuple[int, ...], layout: Layout) -> Iterator[int]:
-    return (column * layout.pitch for column in columns)
 
 
 def _constant(name: str, data: bytes) -> str:

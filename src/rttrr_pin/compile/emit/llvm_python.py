@@ -6,7 +6,7 @@ takes q, v, a, force and moment of each payload, then the outputs; None for what
 is to allocate. It returns the output, a tuple of several, or None: declined.
 
 Only functions of the C APIs of CPython (the stable one) and NumPy are called (`FUNCTIONS`): arrays are read through the
-buffer protocol, whose `Py_buffer` has a documented layout. `fastcall` makes a Python function of it.
+buffer protocol, whose `Py_buffer` has a documented layout.
 """
 
 from __future__ import annotations

@@ -75,14 +75,6 @@ class Lines:
         """A binary operation on vectors of int64."""
         return self(f"{what} {self.integers} {x}, {y}")
 
-    def as_bits(self, x: str) -> str:
-        """The bits of a vector of float64."""
-        return self(f"bitcast {self.vector} {x} to {self.integers}")
-
-    def as_floats(self, x: str) -> str:
-        """The float64 that have these bits."""
-        return self(f"bitcast {self.integers} {x} to {self.vector}")
-
     def at(self, base: str, offset: int) -> str:
         """The address of column offset, at the present states."""
         return self(f"getelementptr double, ptr {base}, i64 {offset}")
@@ -161,9 +153,8 @@ class VectorCode:
 
     def get(self, x: int) -> str:
         """The vector of a node; read from memory where this segment does not compute it."""
-        constants = self.value.get(x)
-        if constants is not None:
-            return constants
+        if x in self.value:
+            return self.value[x]
         graph = self.program.graph
         if graph.op[x] is Op.CONSTANT:
             return self.lines.splat(graph.value[x])
@@ -262,7 +253,7 @@ def polynomials(lines: Lines, q: str) -> tuple[str, str]:
     over = op("fsub", op("fsub", splat(1.0), w), half)
     tail = fma(op("fmul", z, z), cosine, over)
     c = op("fadd", w, fma(lines.negated(r), low, tail))
-    quadrant = lines.as_bits(shifted)
+    quadrant = lines(f"bitcast {lines.vector} {shifted} to {lines.integers}")
     odd = lines(f"icmp slt {lines.integers} {bits('shl', quadrant, lines.whole(63))}, {lines.whole(0)}")
     mask, v = f"<{lines.lanes} x i1>", lines.vector
     flips = [
@@ -271,8 +262,13 @@ def polynomials(lines: Lines, q: str) -> tuple[str, str]:
     ]
     pair = (f"{v} {c}, {v} {s}", f"{v} {s}, {v} {c}")
     chosen = [lines(f"select {mask} {odd}, {both}") for both in pair]
-    s, c = (lines.as_floats(bits("xor", lines.as_bits(x), flip)) for x, flip in zip(chosen, flips, strict=True))
+    s, c = (_sign_flipped(lines, x, flip) for x, flip in zip(chosen, flips, strict=True))
     return s, c
+
+
+def _sign_flipped(lines: Lines, x: str, flip: str) -> str:
+    bits = lines.bits("xor", lines(f"bitcast {lines.vector} {x} to {lines.integers}"), flip)
+    return lines(f"bitcast {lines.integers} {bits} to {lines.vector}")
 
 
 def _horner(lines: Lines, z: str, terms: tuple[float, ...]) -> str:
