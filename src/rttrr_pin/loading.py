@@ -40,7 +40,8 @@ def load(
         ShapeError, NumberError: gravity is no vector of three finite numbers.
         InputError: the source is of another type, an extra is missing, or base is neither "fixed" nor "floating".
     """
-    from rttrr_pin.urdf.reader import read_urdf  # loads lxml, which a robot made from numbers does not need
+    from rttrr_pin.urdf.parser import read_document  # loads lxml, which a robot made from numbers does not need
+    from rttrr_pin.urdf.reader import model_of
 
     field = vectors("gravity", gravity)
     if field.ndim != 1:
@@ -52,7 +53,7 @@ def load(
         )
     if base not in ("fixed", "floating"):
         raise InputError(f"base is {base!r}: expected 'fixed' (bolted down) or 'floating'")
-    model = read_urdf(source).with_gravity(field)
+    model = model_of(read_document(source)).with_gravity(field)
     if base == "floating":
         model = model.with_floating_base()
     return Robot(model if friction else model.without_joint_effects())

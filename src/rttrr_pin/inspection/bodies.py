@@ -9,7 +9,7 @@ import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.inspection.exact import Shape, shape
-from rttrr_pin.urdf.document import UrdfDocument
+from rttrr_pin.urdf.document import NO_INERTIAL, UrdfDocument
 
 ROUNDING = 1e-14
 """Of the largest: what is smaller is what diagonalising leaves of a zero. For show; verdicts are decided exactly."""
@@ -61,17 +61,17 @@ def centre_of_mass(document: UrdfDocument, rows: tuple[LinkRow, ...], mass: floa
 def tree(document: UrdfDocument) -> Iterator[LinkRow]:
     """The links, parents before children."""
     for depth, name in document.walk():
-        joint, inertial = document.carried_by.get(name), document.links[name].inertial
-        mass = 0.0 if inertial is None else float(inertial.mass) + 0.0
-        moments, axes = principal(np.zeros((3, 3)) if inertial is None else inertial.inertia)
+        joint, inertial = document.carried_by.get(name), document.links[name].inertial or NO_INERTIAL
+        mass = float(inertial.mass) + 0.0
+        moments, axes = principal(inertial.inertia)
         yield LinkRow(
             name=name,
             depth=depth,
             joint="" if joint is None else joint.name,
             joint_type="" if joint is None else joint.type,
             mass=mass,
-            com=np.zeros(3) if inertial is None else inertial.origin.p,
-            shape=Shape.FRAME if inertial is None else shape(inertial),
+            com=inertial.origin.p.copy(),
+            shape=shape(inertial),
             moments=moments,
             axes=axes,
             semi_axes=semi_axes(mass, moments),

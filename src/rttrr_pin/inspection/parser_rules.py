@@ -7,7 +7,7 @@ tensor lies nearer to a threshold than the parser's own rounding, no rule can sa
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -17,8 +17,8 @@ from rttrr_pin.core.algebra import Vector
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.inspection.bodies import principal
-from rttrr_pin.urdf.decimals import blank_behind, other_blanks
-from rttrr_pin.urdf.document import UrdfDocument, UrdfInertial, UrdfJoint
+from rttrr_pin.urdf.decimals import Number, NumberList
+from rttrr_pin.urdf.document import NO_INERTIAL, UrdfDocument, UrdfInertial, UrdfJoint
 
 EPS = float(np.finfo(np.float64).eps)
 
@@ -84,10 +84,11 @@ def merged_links(document: UrdfDocument, massive_only: bool = False, spare: str 
     """
     merged = {}
     for name, link in document.links.items():
-        merged[name] = MergedLink((name,), 0.0, np.zeros(3), np.zeros((3, 3)))
-        if link.inertial is not None and not (massive_only and link.inertial.mass.exact <= 0):
-            mass = float(link.inertial.mass)
-            merged[name] = MergedLink((name,), mass, mass * link.inertial.origin.p, link.inertial.inertia)
+        inertial = link.inertial or NO_INERTIAL
+        if massive_only and inertial.mass.exact <= 0:
+            inertial = NO_INERTIAL
+        mass = float(inertial.mass)
+        merged[name] = MergedLink((name,), mass, mass * inertial.origin.p, inertial.inertia)
     for _, name in reversed(list(document.walk())):
         joint = document.carried_by.get(name)
         if joint is not None and not joint.moves and joint.parent != spare:
@@ -120,18 +121,23 @@ def _sorted_moments(tensor: Array, negligible: float = 0.0) -> Array:
     return principal(tensor)[0]
 
 
+def _unparsed(numbers: Iterable[Number], vectors: Iterable[NumberList]) -> bool:
+    """Whether there is a blank behind a number, or numbers are apart by more than spaces, at which urdfdom splits."""
+    blank_behind = any(number.text != number.text.rstrip() for number in numbers)
+    return blank_behind or any(blank in vector.text for vector in vectors for blank in "\t\r\n")
+
+
 def unparsed_joint(joint: UrdfJoint) -> bool:
-    """A blank behind a number, or other blanks than spaces between numbers."""
+    """Whether urdfdom takes a number of the joint for none, although XML allows the blanks around it."""
     numbers = [joint.damping, joint.friction, *(joint.limit or {}).values()]
     numbers += [joint.mimic.multiplier, joint.mimic.offset] if joint.mimic else []
     vectors = [joint.origin.xyz, joint.origin.rpy] + [joint.axis] * (joint.type not in ("fixed", "floating"))
-    return any(map(blank_behind, numbers)) or any(map(other_blanks, vectors))
+    return _unparsed(numbers, vectors)
 
 
 def unparsed_inertial(inertial: UrdfInertial) -> bool:
     """The same of an <inertial>."""
-    numbers, vectors = (inertial.mass, *inertial.entries.values()), (inertial.origin.xyz, inertial.origin.rpy)
-    return any(map(blank_behind, numbers)) or any(map(other_blanks, vectors))
+    return _unparsed((inertial.mass, *inertial.entries.values()), (inertial.origin.xyz, inertial.origin.rpy))
 
 
 def floating_on_moving(document: UrdfDocument) -> Iterator[str]:

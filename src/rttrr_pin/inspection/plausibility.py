@@ -165,29 +165,6 @@ class Reading:
     sure: bool = True
 
 
-def _about_origin(inertial: UrdfInertial) -> Iterator[Reading]:
-    """The numbers are about the link's origin: I - m (c.c 1 - c c^T) is about the centre of mass."""
-    c, R = inertial.origin.p, inertial.origin.R
-    if c.any():
-        shifted = inertial.inertia - float(inertial.mass) * point_tensor(Vector.of(c)).array
-        yield Reading(R.T @ shifted @ R, "about the link's origin and not about the centre of mass")
-
-
-def _slots(inertial: UrdfInertial) -> Iterator[Reading]:
-    """ixx, iyy, izz stand in another order."""
-    for order in list(permutations(range(3)))[1:]:
-        written = inertial.tensor.copy()
-        written[range(3), range(3)] = inertial.tensor.diagonal()[list(order)]
-        names = ", ".join(DIAGONAL[k] for k in order)
-        yield Reading(written, f"in the wrong slots: ixx, iyy, izz hold what belongs to {names}", sure=False)
-
-
-def _powers(inertial: UrdfInertial) -> Iterator[Reading]:
-    """Another unit."""
-    for factor, unit in UNITS:
-        yield Reading(inertial.tensor / factor, f"in {unit} and not in kg m^2", sure=factor >= 1e6)
-
-
 def _misread(
     subject: Subject, readings: Callable[[UrdfInertial], Iterator[Reading]], fix: str
 ) -> Iterator[Observation]:
@@ -239,19 +216,40 @@ def _rewrite(case: Case, reading: Reading) -> tuple[Edit, ...]:
 @check("G205", Severity.WARNING)
 def about_origin(subject: Subject) -> Iterator[Observation]:
     """The inertia is about the centre of mass, not about the link's origin."""
-    return _misread(subject, _about_origin, "subtract m (c.c 1 - c c^T), the parallel-axis term")
+
+    def readings(inertial: UrdfInertial) -> Iterator[Reading]:
+        """I - m (c.c 1 - c c^T) is about the centre of mass."""
+        c, R = inertial.origin.p, inertial.origin.R
+        if c.any():
+            shifted = inertial.inertia - float(inertial.mass) * point_tensor(Vector.of(c)).array
+            yield Reading(R.T @ shifted @ R, "about the link's origin and not about the centre of mass")
+
+    return _misread(subject, readings, "subtract m (c.c 1 - c c^T), the parallel-axis term")
 
 
 @check("G206", Severity.WARNING)
 def swapped(subject: Subject) -> Iterator[Observation]:
     """ixx, iyy, izz stand in their own slots."""
-    return _misread(subject, _slots, "write each moment into its own slot, or the rpy that the inertial frame lacks")
+
+    def readings(inertial: UrdfInertial) -> Iterator[Reading]:
+        for order in list(permutations(range(3)))[1:]:
+            written = inertial.tensor.copy()
+            written[range(3), range(3)] = inertial.tensor.diagonal()[list(order)]
+            names = ", ".join(DIAGONAL[k] for k in order)
+            yield Reading(written, f"in the wrong slots: ixx, iyy, izz hold what belongs to {names}", sure=False)
+
+    return _misread(subject, readings, "write each moment into its own slot, or the rpy that the inertial frame lacks")
 
 
 @check("G207", Severity.WARNING)
 def wrong_power(subject: Subject) -> Iterator[Observation]:
     """The inertia is in kg m^2."""
-    return _misread(subject, _powers, "write the inertia in kg m^2")
+
+    def readings(inertial: UrdfInertial) -> Iterator[Reading]:
+        for factor, unit in UNITS:
+            yield Reading(inertial.tensor / factor, f"in {unit} and not in kg m^2", sure=factor >= 1e6)
+
+    return _misread(subject, readings, "write the inertia in kg m^2")
 
 
 @check("G208", Severity.NOTE)

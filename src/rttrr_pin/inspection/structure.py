@@ -42,20 +42,21 @@ def _same_case(word: str, like: str) -> str:
     return word.capitalize() if like[0].isupper() else word
 
 
-def _pairs(subject: Subject) -> Iterator[tuple[UrdfLink, UrdfInertial, UrdfLink, UrdfInertial]]:
+def _pairs(subject: Subject) -> Iterator[tuple[UrdfLink, UrdfLink, tuple[float, float, float]]]:
     """Pairs that both have mass, the first of the file first; of several possible mirror images the most alike."""
-    seen = set[str]()
-    links = subject.document.links
+    inertials = dict(subject.inertials())
+    seen, links = set[str](), subject.document.links
     for name, link in links.items():
         seen.add(name)
         mirrored = [links[other] for other in other_side(name) if other in links]
-        own = link.inertial
-        if own is None or any(other.name in seen for other in mirrored):
+        if link not in inertials or any(other.name in seen for other in mirrored):
             continue
-        massive = [(other, other.inertial) for other in mirrored if other.inertial is not None]
-        if massive:
-            _, k = min((_difference(own, inertial), k) for k, (_, inertial) in enumerate(massive))
-            yield link, own, *massive[k]
+        differences = {
+            other: _difference(inertials[link], inertials[other]) for other in mirrored if other in inertials
+        }
+        if differences:
+            image = min(differences, key=differences.__getitem__)
+            yield link, image, differences[image]
 
 
 def _difference(one: UrdfInertial, other: UrdfInertial) -> tuple[float, float, float]:
@@ -74,9 +75,10 @@ def _difference(one: UrdfInertial, other: UrdfInertial) -> tuple[float, float, f
 @check("T301", Severity.WARNING)
 def mass_differs(subject: Subject) -> Iterator[Observation]:
     """Left and right links have the same mass."""
-    for link, one, image, other in _pairs(subject):
-        if _difference(one, other)[0] > ALIKE:
-            a, b = float(one.mass), float(other.mass)
+    inertials = dict(subject.inertials())
+    for link, image, (mass, _, _) in _pairs(subject):
+        if mass > ALIKE:
+            a, b = float(inertials[link].mass), float(inertials[image].mass)
             yield Observation(
                 link, a - b, "kg", f"its mass is {a:.6g} kg, that of its mirror image {image.name!r} {b:.6g} kg",
                 "find out which of the two is right, and write it for both",
@@ -86,8 +88,7 @@ def mass_differs(subject: Subject) -> Iterator[Observation]:
 @check("T302", Severity.WARNING)
 def shape_differs(subject: Subject) -> Iterator[Observation]:
     """Left and right links are mirror images."""
-    for link, one, image, other in _pairs(subject):
-        mass, inertia, com = _difference(one, other)
+    for link, image, (mass, inertia, com) in _pairs(subject):
         if mass <= ALIKE and max(inertia, com) > ALIKE:
             parts = (("principal moments", inertia), ("distance of the centre of mass from the origin", com))
             differing = " and ".join(f"{what} (by {gap:.2g} of it)" for what, gap in parts if gap > ALIKE)
@@ -118,19 +119,16 @@ def _reach(limit: dict[str, float]) -> float:
     return max(abs(limit.get("lower", 0.0)), abs(limit.get("upper", 0.0)))
 
 
-def _unit(joint: UrdfJoint) -> str:
-    return "m" if joint.type == "prismatic" else "rad"
-
-
 @check("J401", Severity.WARNING)
 def locked(subject: Subject) -> Iterator[Observation]:
     """The lower limit is below the upper one."""
     for joint, limit in _limited(subject):
         lower, upper = limit.get("lower", 0.0), limit.get("upper", 0.0)
         if lower == upper:
+            unit = "m" if joint.type == "prismatic" else "rad"
             unset = "" if {"lower", "upper"} & limit.keys() else " (neither is written, and URDF's default is 0)"
             yield Observation(
-                joint, lower, _unit(joint), f"lower and upper limit are equal{unset}: the joint cannot move",
+                joint, lower, unit, f"lower and upper limit are equal{unset}: the joint cannot move",
                 "write the range, or make the joint fixed, or continuous if it turns without end",
             )  # fmt: skip
 

@@ -128,11 +128,11 @@ def build_urdf(code: str, name: str | None = None) -> str:
     for joint, module, origin, parts, body, (parent, child) in zip(
         arm.joint_names, arm.modules, arm.origins, arm.links[1:], arm.bodies, pairwise(arm.link_names), strict=False
     ):
-        robot.append(_joint(joint, module.type, parent, child, origin, module))
+        robot.append(_joint(joint, parent, child, origin, module))
         link = ET.SubElement(robot, "link", name=child)
         link.append(_inertial(body))
         link.extend(_shapes(parts))
-    robot.append(_joint("tool_joint", "fixed", arm.link_names[-2], "tool", arm.origins[-1]))
+    robot.append(_joint("tool_joint", arm.link_names[-2], "tool", arm.origins[-1]))
     ET.SubElement(robot, "link", name="tool")
     ET.indent(robot)
     header = _header(code, is_bundled=code in CODES and name == code.lower())
@@ -172,8 +172,9 @@ def _shapes(parts: Iterable[Part]) -> Iterator[ET.Element]:
             yield element
 
 
-def _joint(name: str, kind: str, parent: str, child: str, origin: Triple, module: Module | None = None) -> ET.Element:
-    element = ET.Element("joint", name=name, type=kind)
+def _joint(name: str, parent: str, child: str, origin: Triple, module: Module | None = None) -> ET.Element:
+    """A module's joint; without a module a fixed one."""
+    element = ET.Element("joint", name=name, type="fixed" if module is None else module.type)
     ET.SubElement(element, "origin", xyz=given(origin), rpy="0 0 0")
     ET.SubElement(element, "parent", link=parent)
     ET.SubElement(element, "child", link=child)

@@ -70,16 +70,6 @@ class NumberList:
         return tuple(map(float, self.each))
 
 
-def blank_behind(number: Number) -> bool:
-    """Whether a blank follows the digits, which XML allows and urdfdom takes for no number."""
-    return number.text != number.text.rstrip()
-
-
-def other_blanks(numbers: NumberList) -> bool:
-    """Whether numbers are kept apart by more than spaces, at which alone urdfdom splits."""
-    return any(blank in numbers.text for blank in "\t\r\n")
-
-
 def text_of(value: Fraction) -> str:
     """All digits of a fraction whose denominator divides a power of ten."""
     places = 0

@@ -100,6 +100,10 @@ class UrdfInertial:
             return np.asarray((turned + turned.T) / 2)
 
 
+NO_INERTIAL = UrdfInertial(Placement(), Number("0"), dict.fromkeys(ENTRIES, Number("0")))
+"""What a link without <inertial> has."""
+
+
 @dataclass(frozen=True, eq=False)
 class UrdfShape:
     """A <visual> or <collision>.

@@ -12,24 +12,7 @@ from rttrr_pin.core.joint import Joint, JointEffects, Limits, Mimic
 from rttrr_pin.core.joints import JOINT_TYPES, JointType
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.errors import InputError, UrdfError, shortened
-from rttrr_pin.urdf.document import UrdfDocument, UrdfJoint, UrdfLink
-from rttrr_pin.urdf.parser import read_document
-from rttrr_pin.urdf.sources import AnySource
-
-
-def read_urdf(source: AnySource) -> Model:
-    """Read a robot.
-
-    Args:
-        source: a name, a path, a text, ...: see `sources.py`.
-
-    Returns:
-        The model, links and joints in Pinocchio's order (see `UrdfDocument.walk`).
-
-    Raises:
-        UnknownNameError, InputError, UrdfError: as in `read_document`; UrdfError also where numbers overflow.
-    """
-    return model_of(read_document(source))
+from rttrr_pin.urdf.document import NO_INERTIAL, UrdfDocument, UrdfJoint, UrdfLink
 
 
 def model_of(document: UrdfDocument) -> Model:
@@ -44,7 +27,9 @@ def model_of(document: UrdfDocument) -> Model:
     links, joints = {}, []
     for name, link in document.links.items():
         with _located(document, "link", link):
-            links[name] = _link(link)
+            inertial = link.inertial or NO_INERTIAL
+            origin = inertial.origin
+            links[name] = Link(name, float(inertial.mass), origin.p, inertial.inertia, origin.rotated)
     for joint in order:
         with _located(document, "joint", joint):
             joints.append(_joint(joint, of_link.get(joint.parent, -1), _mimic(joint, document, index)))
@@ -82,14 +67,6 @@ def _mimic(joint: UrdfJoint, document: UrdfDocument, index: dict[str, int]) -> M
         return Mimic(index[joint.name], float(multiplier), float(offset), rounded=followed > 1)
     except OverflowError:
         raise InputError("a chain of mimics has a multiplier or an offset that float64 cannot hold") from None
-
-
-def _link(link: UrdfLink) -> Link:
-    """A link; its tensor in the axes of the link frame."""
-    inertial = link.inertial
-    if inertial is None:
-        return Link(link.name)
-    return Link(link.name, float(inertial.mass), inertial.origin.p, inertial.inertia, inertial.origin.rotated)
 
 
 def _joint(joint: UrdfJoint, parent: int, mimic: Mimic | None) -> Joint:
