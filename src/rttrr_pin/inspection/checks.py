@@ -65,7 +65,7 @@ class Finding:
     repair: tuple[Edit, ...] = ()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Subject:
     """What checks look at.
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from itertools import permutations
 
 import numpy as np
@@ -70,15 +71,17 @@ class Case:
     reach: float
 
 
-def _cases(subject: Subject) -> Iterator[Case]:
+@lru_cache(maxsize=1)  # all checks of this file look at the same cases
+def _cases(subject: Subject) -> tuple[Case, ...]:
     """Links with mass, a tensor, and geometry that could be read."""
+    cases = []
     for link, inertial in subject.inertials():
-        looks = subject.looks(link)
-        if inertial.mass.exact > 0 and not inertial.is_zero and looks.known:
+        if inertial.mass.exact > 0 and not inertial.is_zero and (looks := subject.looks(link)).known:
             mass = float(inertial.mass)
             gyration = float(np.sqrt(max(principal(inertial.tensor)[0][-1], 0.0) / mass))
             reach = float(np.linalg.norm(looks.points - inertial.origin.p, axis=1).max())
-            yield Case(link, inertial, looks, mass, gyration, reach)
+            cases.append(Case(link, inertial, looks, mass, gyration, reach))
+    return tuple(cases)
 
 
 @check("G201", Severity.WARNING)

@@ -137,8 +137,13 @@ def _outline(solid: Box | Cylinder | Sphere) -> Array:
 
 def _hull(role: str, clouds: Iterable[Array]) -> Filled | None:
     """The filled hull of points; None where they lie in a plane."""
-    body = filled_hull(np.unique(np.concatenate(list(clouds)), axis=0))
+    body = _filled(np.unique(np.concatenate(list(clouds)), axis=0).tobytes())
     return None if body is None else Filled(f"the hull of the {role}s", body, False)
+
+
+@lru_cache(maxsize=64)  # most links are drawn as they collide: two hulls, and that of both, are one
+def _filled(points: bytes) -> RigidBody | None:
+    return filled_hull(np.frombuffer(points).reshape(-1, 3).copy())
 
 
 def _mesh_points(shape: UrdfShape, folder: Path | None) -> Array:
