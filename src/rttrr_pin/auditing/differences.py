@@ -87,7 +87,8 @@ def between_factors(printed: Factors, derived: Factors, symbols: Mapping[str, Sy
         weight += WEIGHT[Kind.SYMBOL] if one else SECOND_SYMBOL * exchanged
         weight += 0 if one else LOST_SYMBOL * abs(wrong.total() - right.total())
         kinds += (Kind.SYMBOL,) * exchanged
-        if one and _other_dots(symbols[next(iter(wrong))], symbols[next(iter(right))]):
+        roles = {symbols[name].role for name in (*wrong, *right)}
+        if one and len(roles) > 1 and roles <= DOTS.keys():  # of different coordinates, with another number of dots
             weight += WEIGHT[Kind.RATE]
             kinds += (Kind.RATE,)
     for name, power in (wrong or right).items() if not (wrong and right) else ():
@@ -103,7 +104,10 @@ def _dots(wrong: Counter[str], right: Counter[str], symbols: Mapping[str, Symbol
     weight = 0.0
     moving = {symbols[name].index for name in wrong if symbols[name].role in DOTS}
     for index in sorted(moving):
-        printed, derived = ([name for name in side if _moves(symbols[name], index)] for side in (wrong, right))
+        printed, derived = (
+            [name for name in side if symbols[name].role in DOTS and symbols[name].index == index]
+            for side in (wrong, right)
+        )
         if not derived:
             continue
         weight += WEIGHT[Kind.RATE]
@@ -114,12 +118,3 @@ def _dots(wrong: Counter[str], right: Counter[str], symbols: Mapping[str, Symbol
             wrong.pop(name, None)
             right.pop(name, None)
     return kinds, weight
-
-
-def _other_dots(one: Symbol, other: Symbol) -> bool:
-    """Whether two symbols are of different coordinates and carry another number of dots."""
-    return one.role in DOTS and other.role in DOTS and one.role is not other.role
-
-
-def _moves(symbol: Symbol, index: int) -> bool:
-    return symbol.role in DOTS and symbol.index == index

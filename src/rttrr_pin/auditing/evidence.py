@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 from flint import arb
 
-from rttrr_pin.auditing.normalise import add_sums
+from rttrr_pin.auditing.normalise import add_sums, sums_of_angles
 from rttrr_pin.core.algebra import Matrix, Scalar, Vector
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dynamics import dynamics
@@ -70,6 +70,7 @@ class Witness:
 
     def evidence(self, name: str, printed: Expression, corrected: Expression) -> Evidence:
         """The numbers of a component, such as F5z, as printed and as corrected."""
+        self._add_sums_of_angles({symbol for terms in (printed, corrected) for x in terms for symbol, _ in x})
         pinocchio, truth = self.pinocchio(name), self.recursion(name)
         known = all(symbol in self._float_values for factors in printed for symbol, _ in factors)
         enclosure = self.enclosure(corrected)
@@ -84,22 +85,12 @@ class Witness:
 
     def pinocchio(self, name: str) -> float:
         """Pinocchio's value of a component, such as F5z."""
-        quantity, place, axis = _parsed(name)
-        if quantity == "tau":
-            return float(self._computed["tau"][0, place])
-        if quantity == "vC":
-            return float(self._computed["F"][0, place, axis]) / self.robot.model.links[place].mass
-        return float(self._computed[quantity][0, place, axis])
+        return float(_component(name, self._computed, [link.mass for link in self.robot.model.links]))
 
     def recursion(self, name: str) -> arb:
         """The enclosure of a component by the recursion."""
-        quantity, place, axis = _parsed(name)
-        if quantity == "tau":
-            return arb(self._enclosures.tau[place])
-        if quantity == "vC":
-            with precision(BITS):
-                return arb(tuple(self._enclosures.F[place])[axis]) / self._masses[place]
-        return arb(tuple(getattr(self._enclosures, quantity)[place])[axis])
+        with precision(BITS):
+            return arb(_component(name, self._enclosures, [body.M for body in self._bodies]))
 
     def number(self, terms: Expression) -> float:
         """The value of a sum in float64."""
@@ -110,31 +101,32 @@ class Witness:
         with precision(BITS):
             return arb(evaluate(terms, self._interval_values, interval))
 
-    def add_sums_of_angles(self, angles: Sequence[str]) -> None:
-        """Give sines and cosines of sums of angles, such as `1_2`, their values."""
-        add_sums(self._float_values, angles)
+    def _add_sums_of_angles(self, symbols: Iterable[str]) -> None:
+        sums = sums_of_angles(symbols)
+        add_sums(self._float_values, sums)
         with precision(BITS):
-            add_sums(self._interval_values, angles)
+            add_sums(self._interval_values, sums)
 
     @cached_property
     def _float_values(self) -> dict[str, Any]:
-        values: dict[str, Any] = dict(self.values)
-        for angle in angles(self.robot.model):
-            x = self.values[f"q_{angle.place}"] * angle.multiplier + angle.offset
-            values |= {f"s_{angle.suffix}": float(np.sin(x)), f"c_{angle.suffix}": float(np.cos(x))}
-        return values
+        return self._all_values(float, lambda x: (float(np.sin(x)), float(np.cos(x))))
 
     @cached_property
     def _interval_values(self) -> dict[str, Any]:
         with precision(BITS):
-            values: dict[str, Any] = {name: interval(x) for name, x in self.values.items()}
-            for angle in angles(self.robot.model):
-                x = values[f"q_{angle.place}"] * interval(angle.multiplier) + interval(angle.offset)
-                values[f"s_{angle.suffix}"], values[f"c_{angle.suffix}"] = x.sin_cos()
+            return self._all_values(interval, INTERVAL.sincos)
+
+    def _all_values(self, number: Callable[[float], Any], sincos: Callable[[Any], tuple[Any, Any]]) -> dict[str, Any]:
+        """The values in one kind of scalar, with the sines and cosines of the robot's angles."""
+        values = {name: number(x) for name, x in self.values.items()}
+        for angle in angles(self.robot.model):
+            x = values[f"q_{angle.place}"] * number(angle.multiplier) + number(angle.offset)
+            values[f"s_{angle.suffix}"], values[f"c_{angle.suffix}"] = sincos(x)
         return values
 
     @cached_property
     def _computed(self) -> Mapping[str, Array]:
+        """Pinocchio's values of each quantity."""
         loads: list[Load] = []
         for payload in self.robot.payloads:
             f, n = (
@@ -143,21 +135,25 @@ class Witness:
             loads.append(Load(payload.link, f, n))
         model = self.robot.model
         batch = Batch(model, self.q[None], self.v[None], self.a[None], tuple(loads))
-        return make_implementation("pinocchio", model).evaluate(batch).values
+        values = make_implementation("pinocchio", model).evaluate(batch).values
+        return {quantity: value[0] for quantity, value in values.items()}
 
     @cached_property
-    def _masses(self) -> list[arb]:
+    def _bodies(self) -> list[Body]:
         with precision(BITS):
-            return [self._interval(body.M) for body in self.robot.bodies()]
+            return [self._body(body) for body in self.robot.bodies()]
 
     @cached_property
-    def _enclosures(self) -> Any:
-        robot = self.robot
+    def _enclosures(self) -> Mapping[str, Any]:
+        """The recursion's values of each quantity."""
+        robot, vector = self.robot, self._vector
         with precision(BITS):
-            bodies = [self._body(body) for body in robot.bodies()]
-            payloads = [Payload(x.link, self._vector(x.f), self._vector(x.n)) for x in robot.payloads]
+            payloads = [Payload(x.link, vector(x.f), vector(x.n)) for x in robot.payloads]
             q, v, a = ([interval(float(x)) for x in numbers] for numbers in (self.q, self.v, self.a))
-            return dynamics(robot.model, INTERVAL, q, v, a, payloads, links=bodies, gravity=self._vector(robot.gravity))
+            result = dynamics(
+                robot.model, INTERVAL, q, v, a, payloads, links=self._bodies, gravity=vector(robot.gravity)
+            )
+        return {quantity: getattr(result, quantity) for quantity in ("tau", "F", "N", "f", "n")}
 
     def _interval(self, x: Scalar) -> arb:
         return arb(evaluate(self.robot.ring.terms(x), self._interval_values, interval))
@@ -167,20 +163,23 @@ class Witness:
 
     def _body(self, body: Body) -> Body:
         R, I = (Matrix(tuple(self._vector(row) for row in matrix.rows)) for matrix in (body.R, body.I))  # type: ignore[arg-type]
-        p, r_C = self._vector(body.p), self._vector(body.r_C)
-        return Body(
-            body.type,
-            self._vector(body.axis),
-            R,
-            p,
-            self._interval(body.M),
-            r_C,
-            I,
-            tuple(map(self._interval, body.parameters)),
+        return replace(
+            body,
+            axis=self._vector(body.axis),
+            R=R,
+            p=self._vector(body.p),
+            M=self._interval(body.M),
+            r_C=self._vector(body.r_C),
+            I=I,
+            parameters=tuple(map(self._interval, body.parameters)),
         )
 
 
-def _parsed(name: str) -> tuple[str, int, int]:
-    """Quantity, index of the link or joint, and axis of a component by its name."""
+def _component(name: str, quantities: Mapping[str, Any], masses: Sequence[Any]) -> Any:
+    """A component by its name, such as F5z or tau2; the acceleration of a centre of mass is the force over the mass."""
     quantity, number, axis = re.fullmatch(r"([A-Za-z]+?)(\d+)([xyz]?)", name).groups()  # type: ignore[union-attr]
-    return quantity, int(number) - 1, "xyz".index(axis) if axis else 0
+    place = int(number) - 1
+    value = quantities["F" if quantity == "vC" else quantity][place]
+    if axis:
+        value = tuple(value)["xyz".index(axis)]
+    return value / masses[place] if quantity == "vC" else value

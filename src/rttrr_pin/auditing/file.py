@@ -17,15 +17,8 @@ RTTRR = Path(__file__).parent / "data/rttrr_2016_conventions.toml"
 """The paper that this package starts from."""
 
 FILE_KEYS = (
-    "title",
-    "source",
-    "language",
-    "symbols",
-    "equations",
-    *SYMBOL_KEYS,
-    "coordinates",
-    "equation",
-    "convention",
+    *("title", "source", "language", "symbols", "equations", *SYMBOL_KEYS),
+    *("coordinates", "equation", "convention"),
 )
 EQUATION_KEYS = ("number", "line", "quantity", "link", "joint", "components", "latex", "python")
 
@@ -94,11 +87,10 @@ def _symbol_file(file: Table, path: Path) -> tuple[Table, Path]:
 
 def _spell_motion(spellings: dict[str, str], file: Table, model: Model, language: str) -> None:
     """Add the spellings of coordinates, rates and accelerations: by a template with <k>, or one for each."""
-    table = file.table("coordinates").only(("position", "velocity", "acceleration"))
+    keys = ("position", "velocity", "acceleration")
+    table = file.table("coordinates").only(keys)
     counts = (model.nq, model.nv, model.nv)
-    for key, name, usual, count in zip(
-        ("position", "velocity", "acceleration"), "qva", COORDINATES[language], counts, strict=True
-    ):
+    for key, letter, usual, count in zip(keys, "qva", COORDINATES[language], counts, strict=True):
         texts = table.texts(key, default=[usual])
         templates = [text for text in texts if "<k>" in text]
         single = [text for text in texts if "<k>" not in text]
@@ -108,11 +100,8 @@ def _spell_motion(spellings: dict[str, str], file: Table, model: Model, language
                 "give one spelling with <k>, or one for each"
             )
         for k in range(1, count + 1):
-            printed = [
-                *single[k - 1 : k],
-                *(filled(text, {"k": str(k)}, latex=language == "latex") for text in templates),
-            ]
-            spell(spellings, printed, f"{name}_{k}", table)
+            general = [filled(text, {"k": str(k)}, latex=language == "latex") for text in templates]
+            spell(spellings, [*single[k - 1 : k], *general], f"{letter}_{k}", table)
 
 
 def _equations(file: Table, path: Path, model: Model, language: str) -> list[Equation]:

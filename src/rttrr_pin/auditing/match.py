@@ -7,9 +7,8 @@ Both sides are sums of products modulo c^2 + s^2 = 1. The assignment with the le
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from fractions import Fraction
 
 import numpy as np
 from numpy.typing import NDArray
@@ -107,15 +106,16 @@ def match(component: Normalised, aliases: Mapping[str, str]) -> Matching:
         component: printed terms, and derived ones in the form that the text chose.
         aliases: symbols that are equal to others: one for the other is no error.
     """
-    printed = component.printed.terms
-    settled, rest, owed = _added_up(printed, component.derived)
-    best = _assign(component, aliases, rest, owed, settled)
-    for factors in _partly_printed(best):
-        split = _paid(printed, rest, owed, settled, factors)
-        other = _assign(component, aliases, *split)
-        if _weight(other) < _weight(best):
-            best = other
-            rest, owed, settled = split
+    settled = _added_up(component)
+    best = _assign(component, aliases, settled)
+    for pair in best:  # of the first assignment
+        if _partly_printed(pair) and pair.derived:
+            places = {pair.place for pair in settled}
+            others = [x for x in _literal(component.printed.terms) if x.place not in places]
+            also = [*settled, *(x for x in others if x.derived and x.derived[1] == pair.derived[1])]
+            other = _assign(component, aliases, also)
+            if _weight(other) < _weight(best):
+                best, settled = other, also
     return Matching(component, sorted(best, key=lambda pair: (pair.place is None, pair.place or 0)))
 
 
@@ -123,62 +123,39 @@ def _weight(pairs: Iterable[Pair]) -> float:
     return sum(pair.weight for pair in pairs)
 
 
-def _matching(place: int, reading: Reading) -> Pair:
-    return Pair(place, reading, reading.term, (), 0.0)
+def _literal(printed: Sequence[PrintedTerm]) -> Iterator[Pair]:
+    """Each printed term, read literally, as right."""
+    return (Pair(place, term.readings[0], term.literal, (), 0.0) for place, term in enumerate(printed))
 
 
-def _added_up(printed: Sequence[PrintedTerm], derived: Expression) -> tuple[list[Pair], list[int], list[Term]]:
-    """Expression with one product that add up to its coefficient; the places that are left; the derived terms left."""
-    owed = dict(derived)
-    by_factors: dict[Factors, list[int]] = {}
-    for place, term in enumerate(printed):
-        by_factors.setdefault(term.readings[0].factors, []).append(place)
-    settled: list[Pair] = []
-    for factors, places in by_factors.items():
-        total = sum((printed[place].readings[0].coefficient for place in places), Fraction(0))
-        if len(places) > 1 and total == owed.get(factors, 0):
-            settled += [_matching(place, printed[place].readings[0]) for place in places]
-            owed.pop(factors, None)
-    done = {pair.place for pair in settled}
-    left = [place for place in range(len(printed)) if place not in done]
-    return settled, left, [(coefficient, factors) for factors, coefficient in owed.items()]
+def _added_up(component: Normalised) -> list[Pair]:
+    """Several terms with one product that add up to its coefficient: all of them are right."""
+    printed = component.printed.terms
+    totals = expression_of(term.literal for term in printed)
+    copies = Counter(term.literal[1] for term in printed)
+    right = {x for x, n in copies.items() if n > 1 and totals.get(x, 0) == component.derived.get(x, 0)}
+    return [pair for pair, term in zip(_literal(printed), printed, strict=True) if term.literal[1] in right]
 
 
-def _partly_printed(pairs: Iterable[Pair]) -> list[Factors]:
-    """Products whose coefficient is printed too small: perhaps the other part is printed too, and wrongly."""
-    return [
-        pair.derived[1]
-        for pair in pairs
-        if pair.reading
-        and pair.derived
-        and pair.reading.factors == pair.derived[1]
-        and pair.kinds == (Kind.COEFFICIENT,)
-        and abs(pair.reading.coefficient) < abs(pair.derived[0])
-    ]
+def _partly_printed(pair: Pair) -> bool:
+    """The coefficient is printed too small: perhaps the other part is printed too, and wrongly."""
+    if pair.kinds != (Kind.COEFFICIENT,) or not pair.reading or not pair.derived:
+        return False
+    coefficient, factors = pair.derived
+    return pair.reading.factors == factors and abs(pair.reading.coefficient) < abs(coefficient)
 
 
-def _paid(
-    printed: Sequence[PrintedTerm], rest: list[int], owed: list[Term], settled: list[Pair], factors: Factors
-) -> tuple[list[int], list[Term], list[Pair]]:
-    """The same with the printed part of one coefficient taken as right, and the other part still owed."""
-    part = [place for place in rest if printed[place].readings[0].factors == factors]
-    paid = sum((printed[place].readings[0].coefficient for place in part), Fraction(0))
-    still = [(coefficient - paid if other == factors else coefficient, other) for coefficient, other in owed]
-    matching = [_matching(place, printed[place].readings[0]) for place in part]
-    return [place for place in rest if place not in part], still, [*settled, *matching]
-
-
-def _assign(
-    component: Normalised,
-    aliases: Mapping[str, str],
-    rest: Sequence[int],
-    owed: Sequence[Term],
-    settled: Sequence[Pair],
-) -> list[Pair]:
-    """The least assignment of what is left, beside the pairs that are settled."""
+def _assign(component: Normalised, aliases: Mapping[str, str], settled: Sequence[Pair]) -> list[Pair]:
+    """The pairs that are settled, and the least assignment of the other printed terms to what is still owed."""
+    places = {pair.place for pair in settled}
+    rest = [place for place in range(len(component.printed.terms)) if place not in places]
+    derived = ((coefficient, factors) for factors, coefficient in component.derived.items())
+    paid = ((-pair.reading.coefficient, pair.reading.factors) for pair in settled if pair.reading)
+    owed = [(coefficient, factors) for factors, coefficient in expression_of([*derived, *paid]).items()]
     n, m = len(rest), len(owed)
     candidates = _candidates(component, aliases, rest, owed)
     unpaired = _unpaired(component.printed.terms, rest, {*owed, *(pair.derived for pair in settled if pair.derived)})
+    # n rows of printed terms and m of missing ones, m columns of derived terms and n of excess: all are used once
     cost = np.full((n + m, n + m), LIMIT * (n + m + 1))
     cost[n:, m:] = 0.0
     for (i, j), candidate in candidates.items():
@@ -223,16 +200,13 @@ def _candidates(
 
 def _distances(printed: Sequence[Factors], derived: Sequence[Factors]) -> Counts:
     """How many factors differ, for each pair of products."""
-    columns = {name: k for k, name in enumerate(dict.fromkeys(name for x in (*printed, *derived) for name, _ in x))}
-
-    def table(products: Sequence[Factors]) -> Counts:
-        powers = np.zeros((len(products), len(columns)), dtype=np.int64)
-        for row, factors in enumerate(products):
-            for name, power in factors:
-                powers[row, columns[name]] = power
-        return powers
-
-    distances: Counts = np.abs(table(printed)[:, None] - table(derived)).sum(axis=2)
+    products = [*printed, *derived]
+    columns = {name: k for k, name in enumerate(dict.fromkeys(name for factors in products for name, _ in factors))}
+    powers = np.zeros((len(products), len(columns)), dtype=np.int64)
+    for row, factors in enumerate(products):
+        for name, power in factors:
+            powers[row, columns[name]] = power
+    distances: Counts = np.abs(powers[: len(printed), None] - powers[len(printed) :]).sum(axis=2)
     return distances
 
 

@@ -11,7 +11,7 @@ from typing import Any
 from rttrr_pin.auditing.derived import Derived
 from rttrr_pin.auditing.printed import PrintedComponent, PrintedTerm
 from rttrr_pin.derivation.ring import Ring
-from rttrr_pin.derivation.symbols import Expression, Factors, Role, Symbol, Term, factors_of, renamed
+from rttrr_pin.derivation.symbols import Expression, Factors, Role, Symbol, factors_of, renamed
 
 
 @dataclass(frozen=True)
@@ -45,12 +45,15 @@ def normalise(printed: PrintedComponent, name: str, derived: Derived) -> Normali
 
 def with_printed_symbols(known: Mapping[str, Symbol], terms: Iterable[PrintedTerm]) -> Mapping[str, Symbol]:
     """The symbols with the sums of angles and the unknown symbols of printed terms."""
-    names = {name: None for term in terms for x in term.readings for name, _ in x.factors if name not in known}
-    if not names:
-        return known
-    sums = {symbol.name: symbol for symbol in _sum_symbols(sums_of_angles(names))}
-    unknown = {name: Symbol(name, name, Role.UNKNOWN) for name in names if name not in sums}
-    return {**known, **sums, **unknown}
+    names = dict.fromkeys(name for term in terms for x in term.readings for name, _ in x.factors if name not in known)
+    symbols = dict(known)
+    for angle in sums_of_angles(names):
+        subscript = angle.replace("_", "" if all(len(index) == 1 for index in angle.split("_")) else ",")
+        for letter, role in (("s", Role.SINE), ("c", Role.COSINE)):
+            symbols[f"{letter}_{angle}"] = Symbol(f"{letter}_{angle}", f"{letter}_{{{subscript}}}", role)
+    for name in names:
+        symbols.setdefault(name, Symbol(name, name, Role.UNKNOWN))
+    return symbols
 
 
 def sums_of_angles(names: Iterable[str]) -> list[str]:
@@ -61,16 +64,6 @@ def sums_of_angles(names: Iterable[str]) -> list[str]:
         if name[:2] in ("c_", "s_") and all(part.isdigit() for part in parts):
             needed |= {"_".join(parts[:k]) for k in range(2, len(parts) + 1)}
     return sorted(needed, key=lambda angle: (angle.count("_"), angle))
-
-
-def _sum_symbols(angles: Iterable[str]) -> list[Symbol]:
-    """Sines and cosines of sums of angles."""
-    symbols = []
-    for angle in angles:
-        subscript = angle.replace("_", "") if all(len(x) == 1 for x in angle.split("_")) else angle.replace("_", ",")
-        symbols.append(Symbol(f"s_{angle}", f"s_{{{subscript}}}", Role.SINE))
-        symbols.append(Symbol(f"c_{angle}", f"c_{{{subscript}}}", Role.COSINE))
-    return symbols
 
 
 def folded(terms: Expression, angles: Iterable[str]) -> Expression:
@@ -89,12 +82,10 @@ def _fold(terms: Expression, one: tuple[str, str], other: tuple[str, str], sign:
         partner = _exchanged(factors, one, other)
         if factors not in terms or partner is None or terms.get(partner) != sign * terms[factors]:
             continue
-        folded_factors = _exchanged(factors, one, (name,))
-        if folded_factors is None:
-            continue
+        sum_factors = _exchanged(factors, one, (name,)) or ()
         coefficient = terms.pop(factors)
         del terms[partner]
-        terms[folded_factors] = terms.get(folded_factors, Fraction(0)) + coefficient
+        terms[sum_factors] = terms.get(sum_factors, Fraction(0)) + coefficient
 
 
 def _exchanged(factors: Factors, old: Iterable[str], new: Iterable[str]) -> Factors | None:
@@ -119,55 +110,35 @@ def in_printed_form(derived: Expression, printed: Iterable[PrintedTerm], angles:
     Returns:
         An equal sum, with as many printed terms in it as can be.
     """
-    text = Counter({term.literal: 1 for term in printed})
-    products = Counter(factors for _, factors in text)
+    text = {term.literal for term in printed}
+    products = {factors for _, factors in text}
+
+    def likeness(form: Expression) -> tuple[int, int, int]:
+        terms = [(coefficient, factors) for factors, coefficient in form.items() if coefficient]
+        return sum(term in text for term in terms), sum(factors in products for _, factors in terms), -len(terms)
+
     result = dict(derived)
     for angle in angles:
         sine, cosine = f"s_{angle}", f"c_{angle}"
         if not any((sine, 2) in factors for factors in products):
             continue
-        for cofactor, (one, squared) in _by_cofactor(result, cosine).items():
-            result = _rewritten(result, cofactor, (one, squared), (sine, cosine), text)
+        before = dict(result)
+        for times_cosine, squared in before.items():
+            cofactor = _exchanged(times_cosine, (cosine, cosine), ())
+            if cofactor is None:
+                continue
+            # a + b c^2 = (a + b) - b s^2 = (a + b) c^2 + a s^2, each times the cofactor
+            one = before.get(cofactor, Fraction(0))
+            times_sine = factors_of(Counter(dict(cofactor)) + Counter({sine: 2}))
+            forms = (
+                {cofactor: one, times_cosine: squared},
+                {cofactor: one + squared, times_sine: -squared},
+                {times_cosine: one + squared, times_sine: one},
+            )
+            best = max(forms, key=likeness)
+            rest = {x: number for x, number in result.items() if x not in (cofactor, times_cosine, times_sine)}
+            result = rest | {x: number for x, number in best.items() if number}
     return result
-
-
-def _by_cofactor(terms: Expression, cosine: str) -> dict[Factors, tuple[Fraction, Fraction]]:
-    """For each product without c^2: its own coefficient, and that of c^2 times it."""
-    pairs: dict[Factors, tuple[Fraction, Fraction]] = {}
-    for factors in terms:
-        powers = dict(factors)
-        if powers.get(cosine, 0) >= 2:
-            powers[cosine] -= 2
-            cofactor = factors_of(powers)
-            pairs[cofactor] = (terms.get(cofactor, Fraction(0)), terms[factors])
-    return pairs
-
-
-def _rewritten(
-    terms: Expression,
-    cofactor: Factors,
-    coefficients: tuple[Fraction, Fraction],
-    trigonometric: tuple[str, str],
-    text: Counter[Term],
-) -> Expression:
-    """The sum with the form of one product that has most in common with the text."""
-    one, squared = coefficients
-    sine, cosine = trigonometric
-    times_sine, times_cosine = (_exchanged(cofactor, (), (name, name)) or () for name in (sine, cosine))
-    forms = (
-        {cofactor: one, times_cosine: squared},
-        {cofactor: one + squared, times_sine: -squared},
-        {times_cosine: one + squared, times_sine: one},
-    )
-
-    def likeness(form: Expression) -> tuple[int, int, int]:
-        there = [(coefficient, factors) for factors, coefficient in form.items() if coefficient]
-        printed = {factors for _, factors in text}
-        return sum(text[x] for x in there), sum(factors in printed for _, factors in there), -len(there)
-
-    best = max(forms, key=likeness)
-    rest = {factors: x for factors, x in terms.items() if factors not in (cofactor, times_cosine, times_sine)}
-    return rest | {factors: x for factors, x in best.items() if x}
 
 
 def add_sums(values: MutableMapping[str, Any], angles: Sequence[str]) -> None:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from rttrr_pin.auditing.derived import Derived
 from rttrr_pin.auditing.evidence import Evidence, Witness
 from rttrr_pin.auditing.match import Matching
-from rttrr_pin.auditing.normalise import equal, sums_of_angles, with_printed_symbols
+from rttrr_pin.auditing.normalise import equal, with_printed_symbols
 from rttrr_pin.auditing.publication import Publication
 from rttrr_pin.auditing.read import read_component
 from rttrr_pin.auditing.spelling import Writing, writing
@@ -53,7 +53,6 @@ def prove(
         proven = _proven(" ".join(texts), name, derived, publication)
         if proven:
             break
-    witness.add_sums_of_angles(sums_of_angles(component.symbols))
     printed, corrected = renamed(matching.printed, aliases), renamed(expression_of(terms), aliases)
     return Proof(write, texts, proven, witness.evidence(name, printed, corrected))
 

@@ -90,8 +90,7 @@ class ComponentAudit:
         groups: list[list[Finding]] = []
         for finding in self.findings:
             last = groups[-1][-1] if groups else None
-            same = last and finding.derived and (last.printed, last.derived) == (finding.printed, finding.derived)
-            if same:
+            if last and finding.derived and (last.printed, last.derived) == (finding.printed, finding.derived):
                 groups[-1].append(finding)
             else:
                 groups.append([finding])
