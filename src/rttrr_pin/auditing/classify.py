@@ -23,14 +23,7 @@ def corrected_terms(matching: Matching) -> list[tuple[Term, bool]]:
 
 
 def findings(matching: Matching, name: str, dimension: Dimension, write: Writing) -> tuple[Finding, ...]:
-    """The errors of a component: in printed order, then what is missing.
-
-    Args:
-        matching: printed with derived terms.
-        name: of the component.
-        dimension: that every term should have.
-        write: turns derived terms into text.
-    """
+    """The errors of a component: in printed order, then what is missing; `dimension` is what every term should have."""
     hints = _hints(matching.pairs)
     terms, symbols = matching.component.printed.terms, matching.component.symbols
     errors = [(pair, kind) for pair in matching.pairs for kind in pair.kinds]

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from rttrr_pin.auditing.publication import Equation, Publication
-from rttrr_pin.derivation.closed_forms import ClosedForms, closed_forms
+from rttrr_pin.auditing.publication import Publication, component_of
+from rttrr_pin.derivation.closed_forms import closed_forms
 from rttrr_pin.derivation.symbolic_robot import ParameterSymbols, SymbolicRobot
 from rttrr_pin.derivation.symbols import Expression, Symbol, renamed
 
@@ -38,24 +38,15 @@ class Derived:
 def derive(publication: Publication) -> tuple[Derived, ...]:
     """What is right: in the robot's symbols, and, where the text keeps equal symbols apart, in those too."""
     robots = [publication.robot, *([_with_aliases(publication)] if publication.aliases else [])]
-    return tuple(_derived(robot, publication) for robot in robots)
+    names = [name for equation in publication.equations for name in equation.names]
+    return tuple(_derived(robot, names) for robot in robots)
 
 
-def _derived(robot: SymbolicRobot, publication: Publication) -> Derived:
+def _derived(robot: SymbolicRobot, names: Sequence[str]) -> Derived:
     forms = closed_forms(robot)
-    expressions = {
-        name: robot.ring.terms(_polynomial(forms, equation, axis))
-        for equation in publication.equations
-        for name, axis in zip(equation.names, equation.axes, strict=False)  # a definition has no names
-    }
+    quantities = {"vC": forms.v_dot_C, "F": forms.F, "N": forms.N, "f": forms.f, "n": forms.n, "tau": forms.tau}
+    expressions = {name: robot.ring.terms(component_of(name, quantities)) for name in names}
     return Derived(robot.ring.symbols, expressions)
-
-
-def _polynomial(forms: ClosedForms, equation: Equation, axis: int) -> object:
-    if equation.quantity == "tau":
-        return forms.tau[equation.place]
-    vectors = {"vC": forms.v_dot_C, "F": forms.F, "N": forms.N, "f": forms.f, "n": forms.n}
-    return tuple(vectors[equation.quantity][equation.place])[axis]
 
 
 def _with_aliases(publication: Publication) -> SymbolicRobot:

@@ -65,16 +65,7 @@ def between_numbers(printed: Fraction, derived: Fraction) -> Errors:
 
 
 def between_factors(printed: Factors, derived: Factors, symbols: Mapping[str, Symbol]) -> Errors | None:
-    """The errors between two products of symbols.
-
-    Args:
-        printed: the factors as printed.
-        derived: the factors that are right.
-        symbols: by name.
-
-    Returns:
-        None where the products have too little in common.
-    """
+    """The errors between two products of symbols; None where they have too little in common."""
     powers, right_powers = Counter(dict(printed)), Counter(dict(derived))
     kept = powers & right_powers
     wrong, right = powers - kept, right_powers - kept

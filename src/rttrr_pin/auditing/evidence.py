@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -12,6 +11,7 @@ import numpy as np
 from flint import arb
 
 from rttrr_pin.auditing.normalise import add_sums, sums_of_angles
+from rttrr_pin.auditing.publication import component_of
 from rttrr_pin.core.algebra import Matrix, Scalar, Vector
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dynamics import dynamics
@@ -85,12 +85,11 @@ class Witness:
 
     def pinocchio(self, name: str) -> float:
         """Pinocchio's value of a component, such as F5z."""
-        return float(_component(name, self._computed, [link.mass for link in self.robot.model.links]))
+        return float(component_of(name, self._computed))
 
     def recursion(self, name: str) -> arb:
         """The enclosure of a component by the recursion."""
-        with precision(BITS):
-            return arb(_component(name, self._enclosures, [body.M for body in self._bodies]))
+        return arb(component_of(name, self._enclosures))
 
     def number(self, terms: Expression) -> float:
         """The value of a sum in float64."""
@@ -135,25 +134,24 @@ class Witness:
             loads.append(Load(payload.link, f, n))
         model = self.robot.model
         batch = Batch(model, self.q[None], self.v[None], self.a[None], tuple(loads))
-        values = make_implementation("pinocchio", model).evaluate(batch).values
-        return {quantity: value[0] for quantity, value in values.items()}
-
-    @cached_property
-    def _bodies(self) -> list[Body]:
-        with precision(BITS):
-            return [self._body(body) for body in self.robot.bodies()]
+        values = {
+            name: value[0] for name, value in make_implementation("pinocchio", model).evaluate(batch).values.items()
+        }
+        with np.errstate(divide="ignore", invalid="ignore"):  # a link without mass: nothing asks for its acceleration
+            return values | {"vC": values["F"] / np.array([[link.mass] for link in model.links])}
 
     @cached_property
     def _enclosures(self) -> Mapping[str, Any]:
         """The recursion's values of each quantity."""
         robot, vector = self.robot, self._vector
         with precision(BITS):
+            bodies = [self._body(body) for body in robot.bodies()]
             payloads = [Payload(x.link, vector(x.f), vector(x.n)) for x in robot.payloads]
             q, v, a = ([interval(float(x)) for x in numbers] for numbers in (self.q, self.v, self.a))
-            result = dynamics(
-                robot.model, INTERVAL, q, v, a, payloads, links=self._bodies, gravity=vector(robot.gravity)
-            )
-        return {quantity: getattr(result, quantity) for quantity in ("tau", "F", "N", "f", "n")}
+            gravity = vector(robot.gravity)
+            result = dynamics(robot.model, INTERVAL, q, v, a, payloads, links=bodies, gravity=gravity)
+            vC = [[x / body.M for x in force] for body, force in zip(bodies, result.F, strict=True)]  # type: ignore[operator]
+        return {"vC": vC} | {quantity: getattr(result, quantity) for quantity in ("tau", "F", "N", "f", "n")}
 
     def _interval(self, x: Scalar) -> arb:
         return arb(evaluate(self.robot.ring.terms(x), self._interval_values, interval))
@@ -173,13 +171,3 @@ class Witness:
             I=I,
             parameters=tuple(map(self._interval, body.parameters)),
         )
-
-
-def _component(name: str, quantities: Mapping[str, Any], masses: Sequence[Any]) -> Any:
-    """A component by its name, such as F5z or tau2; the acceleration of a centre of mass is the force over the mass."""
-    quantity, number, axis = re.fullmatch(r"([A-Za-z]+?)(\d+)([xyz]?)", name).groups()  # type: ignore[union-attr]
-    place = int(number) - 1
-    value = quantities["F" if quantity == "vC" else quantity][place]
-    if axis:
-        value = tuple(value)["xyz".index(axis)]
-    return value / masses[place] if quantity == "vC" else value

@@ -79,11 +79,7 @@ def match_best(
 ) -> Matching:
     """Pair a printed component with what is derived, in the symbols that leave the least to explain.
 
-    Args:
-        printed: the component as read.
-        name: of the component.
-        derived: what is right, in the robot's symbols and perhaps with equal symbols kept apart.
-        aliases: symbols that are equal to others.
+    `derived` has it in the robot's symbols, and perhaps with the equal symbols of `aliases` kept apart.
     """
     merged = replace(printed, terms=tuple(term.renamed(aliases) for term in printed.terms)) if aliases else printed
     ways = [
@@ -100,12 +96,7 @@ def match_best(
 
 
 def match(component: Normalised, aliases: Mapping[str, str]) -> Matching:
-    """The pairing with the least total weight.
-
-    Args:
-        component: printed terms, and derived ones in the form that the text chose.
-        aliases: symbols that are equal to others: one for the other is no error.
-    """
+    """The pairing with the least total weight; a symbol for one that it is equal to, by `aliases`, is no error."""
     settled = _added_up(component)
     best = _assign(component, aliases, settled)
     for pair in best:  # of the first assignment

@@ -30,13 +30,7 @@ class Normalised:
 
 
 def normalise(printed: PrintedComponent, name: str, derived: Derived) -> Normalised:
-    """Bring a derived component into the form of the printed one.
-
-    Args:
-        printed: the component as read.
-        name: of the component, such as F5z.
-        derived: what is right.
-    """
+    """Bring a derived component, by its name such as F5z, into the form of the printed one."""
     symbols = with_printed_symbols(derived.symbols, printed.terms)
     form = folded(derived.expressions[name], sums_of_angles(symbols))
     angles = [name.removeprefix("c_") for name, symbol in symbols.items() if symbol.role is Role.COSINE]
@@ -150,14 +144,7 @@ def add_sums(values: MutableMapping[str, Any], angles: Sequence[str]) -> None:
 
 
 def equal(printed: Expression, derived: Expression, symbols: Mapping[str, Symbol], aliases: Mapping[str, str]) -> bool:
-    """Whether two sums are equal modulo c^2 + s^2 = 1, sums of angles expanded and equal symbols made one.
-
-    Args:
-        printed: a sum in all of the symbols.
-        derived: a sum without sums of angles.
-        symbols: of both.
-        aliases: symbols that are equal to others.
-    """
+    """Whether two sums are equal modulo c^2 + s^2 = 1, sums of angles of the printed one expanded, aliases made one."""
     ring = Ring(symbols.values())
     difference = ring.polynomial(renamed(printed, aliases)) - ring.polynomial(derived)
     values: dict[str, Any] = {name: ring[name] for name in symbols}

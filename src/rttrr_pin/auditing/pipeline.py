@@ -52,12 +52,6 @@ def match_equation(
 ) -> tuple[list[Matching], str]:
     """Pair the components of an equation with what is derived, for each way to divide it; the best way is taken.
 
-    Args:
-        equation: the equation.
-        splits: the ways to divide its text.
-        derived: what is right, in one form or several.
-        aliases: symbols that are equal to others.
-
     Returns:
         The pairing of each component, and what had to be decided to divide the equation; empty where nothing had to be.
     """

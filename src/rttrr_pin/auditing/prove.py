@@ -35,16 +35,7 @@ class Proof:
 def prove(
     matching: Matching, terms: Sequence[Term], name: str, derived: Derived, publication: Publication, witness: Witness
 ) -> Proof:
-    """Write the corrected component, read it again, and compare it with the derivation and with numbers.
-
-    Args:
-        matching: the component as printed.
-        terms: as they should be printed.
-        name: of the component.
-        derived: what is right, in the robot's symbols.
-        publication: whose notation is used.
-        witness: a random state.
-    """
+    """Write a component as it should be printed, read it again, and compare it with the derivation and with numbers."""
     component, aliases = matching.component, publication.aliases
     texts_of_all = (text for equation in publication.equations for text in equation.texts)
     for examples in ((component.printed.text, *texts_of_all), ()):  # s_2 of the text may be a length, and no sine

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 from rttrr_pin.auditing.reading.vocabulary import Vocabulary
 from rttrr_pin.derivation.symbolic_robot import SymbolicRobot
@@ -41,10 +43,12 @@ class Equation:
             return []
         return [f"{self.quantity}{self.place + 1}{axis}" for axis in self.components or ("",)]
 
-    @property
-    def axes(self) -> list[int]:
-        """The axis of each component, from 0."""
-        return ["xyz".index(axis) for axis in self.components] or [0]
+
+def component_of(name: str, quantities: Mapping[str, Any]) -> Any:
+    """One component by its name, such as F5z or tau2, of quantities that have a value for each link or joint."""
+    quantity, number, axis = re.fullmatch(r"([A-Za-z]+?)(\d+)([xyz]?)", name).groups()  # type: ignore[union-attr]
+    value = quantities[quantity][int(number) - 1]
+    return tuple(value)["xyz".index(axis)] if axis else value
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,10 +31,7 @@ COLOURS = {
 def show_audit(result: AuditResult, console: Console, file: str = "") -> None:
     """Every component's verdict, conventions, totals, and what to type next.
 
-    Args:
-        result: the audit.
-        console: where to print.
-        file: the file of equations as the user named it; empty for the paper.
+    `file` is the file of equations as the user named it; empty for the paper.
     """
     _heading(result, console)
     if result.components:

@@ -29,13 +29,9 @@ MODULE = re.compile(r"(?:(\w+(?:\.\w+)*)\.)?(?:cos|sin)\(")
 
 
 def writing(publication: Publication, symbols: Mapping[str, Symbol], examples: Sequence[str]) -> Writing:
-    """How terms are written.
+    """How terms are written: of several spellings that the publication has for a symbol, in the first.
 
-    Args:
-        publication: whose spellings are used; of several spellings of a symbol the first.
-        symbols: by name.
-        examples: texts whose way to write sines and cosines is followed, that of the first before that of others; where
-            none has any, they are spelled as in s q_2.
+    Sines and cosines are written as in the first of the examples that has any; where none has, as in s q_2.
     """
     preferred: dict[str, str] = {}
     for spelling, name in publication.spellings.items():

@@ -187,10 +187,9 @@ def _function(function: Factor, argument: Factor, vocabulary: Vocabulary) -> Fac
 
 
 def signs(lines: Sequence[Sequence[int]]) -> list[tuple[int, str]]:
-    """Every way to read the signs before a term, the most literal first.
+    """Every way to read the signs before a term, 1 or -1 on each line that has some, the most literal first.
 
-    Args:
-        lines: the signs, 1 or -1, of each line that has some; a sign is repeated where a sum is broken.
+    A sign is repeated where a sum is broken over lines.
     """
     if not lines:
         return [(1, "")]

@@ -93,11 +93,7 @@ def divided(tokens: Iterable[Token], mark: str) -> list[list[Token]]:
 
 
 def parse(tokens: Sequence[Token], end: int) -> Tree[Token]:
-    """The tree of a sum.
-
-    Args:
-        tokens: of the sum, with their places in the text.
-        end: where the sum ends in the text, for the message where it stops too soon.
+    """The tree of a sum; `end` is where it ends in the text, for the message where it stops too soon.
 
     Raises:
         UnreadableError: they are no sum.

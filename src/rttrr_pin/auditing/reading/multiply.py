@@ -27,12 +27,7 @@ Ways = Callable[[tuple[Factor, ...]], Iterable[tuple[Iterable[Factor], str]]]
 
 
 def terms_of(products: Sequence[Product], text: str, ways: Ways) -> Terms:
-    """The terms of a sum, brackets expanded.
-
-    Args:
-        products: of the sum.
-        text: that it stands in.
-        ways: to read the factors of a product.
+    """The terms of a sum that stands in a text, brackets expanded.
 
     Raises:
         UnreadableError: something in it is no polynomial, or there are too many terms or readings.
@@ -88,13 +83,7 @@ def _power(value: Fraction, factor: Factor, divides: bool) -> Fraction:
 
 
 def constant(terms: Terms, message: str, start: int) -> Fraction:
-    """The value of a sum of numbers.
-
-    Args:
-        terms: of the sum.
-        message: of the error where there is a symbol in it.
-        start: where it stands.
-    """
+    """The value of a sum of numbers; UnreadableError with a message and a place where there is a symbol in it."""
     if any(len(term.readings) > 1 or term.readings[0].factors for term in terms):
         raise UnreadableError(message, start)
     return sum((term.readings[0].coefficient for term in terms), Fraction(0))
