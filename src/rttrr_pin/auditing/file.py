@@ -106,10 +106,10 @@ def _spell_motion(spellings: dict[str, str], file: Table, model: Model, language
 
 def _equations(file: Table, path: Path, model: Model, language: str) -> list[Equation]:
     """The equations, which may stand in a file of their own."""
-    place = file.get("equations", str, "")
+    separate = file.get("equations", str, "")
     tables = file.tables("equation", "equation")
-    if place:
-        tables += read_table(path.parent / place).only(("equation",)).tables("equation", "equation")
+    if separate:
+        tables += read_table(path.parent / separate).only(("equation",)).tables("equation", "equation")
     if not tables:
         raise file.error("holds no [[equation]]: add one for each equation")
     equations = [_equation(table, model, language) for table in tables]

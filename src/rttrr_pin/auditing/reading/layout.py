@@ -133,18 +133,18 @@ def _layout(rows: Sequence[Row], starts: Sequence[int], note: str) -> tuple[list
 
 def _unpaired(lines: list[list[Token]]) -> list[Token]:
     """Takes out brackets without a partner that open a line or end one; gives them."""
-    waiting: list[tuple[Token, list[Token]]] = []
+    opened: list[tuple[Token, list[Token]]] = []
     alone: list[tuple[Token, list[Token]]] = []
     for line in lines:
         for token in line:
             if token.type in CLOSES.values():
-                waiting.append((token, line))
-            elif token.type in CLOSES and waiting and waiting[-1][0].type == CLOSES[token.type]:
-                waiting.pop()
+                opened.append((token, line))
+            elif token.type in CLOSES and opened and opened[-1][0].type == CLOSES[token.type]:
+                opened.pop()
             elif token.type in CLOSES:
                 alone.append((token, line))
     unpaired = [(token, line) for token, line in alone if token is line[-1]]
-    unpaired += [(token, line) for token, line in waiting if token is line[0]]
+    unpaired += [(token, line) for token, line in opened if token is line[0]]
     for token, line in unpaired:
         line[:] = [other for other in line if other is not token]
     return [token for token, _ in unpaired]

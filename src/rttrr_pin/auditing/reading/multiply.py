@@ -122,8 +122,8 @@ def _shown(product: Product, brackets: Brackets, picked: Sequence[int], text: st
         if len(terms) > 1:
             piece = f"{'... ' if i else ''}{terms[i].text}{' ...' if i + 1 < len(terms) else ''}"
             pieces.setdefault((group.start, group.end), []).append(piece)
-    shown, here = "", product.start
+    shown, position = "", product.start
     for (start, end), alternatives in sorted(pieces.items()):
-        shown += text[here:start] + ", ".join(alternatives)
-        here = end
-    return " ".join((shown + text[here : product.end]).replace("\\\\", " ").replace("&", " ").split())
+        shown += text[position:start] + ", ".join(alternatives)
+        position = end
+    return " ".join((shown + text[position : product.end]).replace("\\\\", " ").replace("&", " ").split())

@@ -57,9 +57,9 @@ def rows_of(tokens: Sequence[Token]) -> tuple[list[Row], bool]:
     if not begins and not ends:
         return _lines(tokens), False
     if len(begins) != 1 or len(ends) != 1 or begins[0] > ends[0]:
-        place = tokens[[*begins[1:], *ends, *begins][0]]
+        superfluous = tokens[[*begins[1:], *ends, *begins][0]]
         message = "one matrix is wanted, with its begin and its end; give each its own text"
-        raise UnreadableError(message, start_of(place))
+        raise UnreadableError(message, start_of(superfluous))
     _around(tokens[: begins[0]], tokens[ends[0] + 1 :])
     return _cells(tokens[begins[0] + 1 : ends[0]]), True
 
@@ -109,15 +109,16 @@ def _lines(tokens: Sequence[Token]) -> list[Row]:
 
 def _row(line: list[Token]) -> Row:
     """A line without its left-hand side and its stop."""
-    places = [i for i, token in enumerate(line) if token.type == "EQUALS"]
-    if len(places) > 1:
+    sides = divided(line, "EQUALS")
+    if len(sides) > 2:
+        second = [token for token in line if token.type == "EQUALS"][1]
         message = "a second = in one line; leave the left-hand side and the side to be read"
-        raise UnreadableError(message, start_of(line[places[1]]))
-    if places:
-        line = _right(line[: places[0]], line[places[0] + 1 :])
+        raise UnreadableError(message, start_of(second))
+    if len(sides) > 1:
+        line = _right(*sides)
     while line and line[-1].type in STOPS:
         line = line[:-1]
-    return Row(tuple(line), bool(places))
+    return Row(tuple(line), len(sides) > 1)
 
 
 def _right(left: list[Token], right: list[Token]) -> list[Token]:

@@ -35,39 +35,24 @@ def single_symbol(products: tuple[Product, ...]) -> Factor | None:
 
 def products_of(tree: Node) -> tuple[Product, ...]:
     """The products of a sum's tree."""
-    products = []
-    signs: tuple[tuple[int, ...], ...] = ()
-    start = None
-    for child in _trees(tree):
-        if child.data == "signs":
-            signs, start = _signs(child)
-            continue
-        products.append(Product(signs, _factors(child), start_of(child) if start is None else start, end_of(child)))
-        signs, start = (), None
-    return tuple(products)
+    return tuple(map(_product, _trees(tree)))
 
 
-def _signs(tree: Tree[Token]) -> tuple[tuple[tuple[int, ...], ...], int]:
-    """The signs line by line, and where the last line's begin."""
-    lines = [line for line in divided(_tokens(tree), "BREAK") if line]
+def _product(tree: Tree[Token]) -> Product:
+    if tree.data == "product":
+        return Product((), tuple(map(_factor, _trees(tree))), start_of(tree), end_of(tree))
+    signs, product = _trees(tree)
+    lines = [line for line in divided(_tokens(signs), "BREAK") if line]
     if not lines:
         raise UnreadableError("a line break stands where a sum begins, wanted a sign or a symbol", start_of(tree))
-    return tuple(tuple(1 if token == "+" else -1 for token in line) for line in lines), start_of(lines[-1][0])
-
-
-def _factors(tree: Tree[Token]) -> tuple[Factor, ...]:
-    factors: list[Factor] = []
-    operator = ""
-    for child in _trees(tree):
-        if child.data == "operator":
-            operator = "/" if _tokens(child)[0].type == "SLASH" else "*"
-        else:
-            factors.append(replace(_factor(child), operator=operator))
-            operator = ""
-    return tuple(factors)
+    values = tuple(tuple(1 if token == "+" else -1 for token in line) for line in lines)
+    return replace(_product(product), signs=values, start=start_of(lines[-1][0]))
 
 
 def _factor(tree: Tree[Token]) -> Factor:
+    if tree.data == "operation":
+        operator, operand = _trees(tree)
+        return replace(_factor(operand), operator="/" if _tokens(operator)[0].type == "SLASH" else "*")
     if tree.data == "led":
         *scripts, inner = _trees(tree)
         return replace(_factor(inner), prefix=_prefix(scripts), start=start_of(tree))

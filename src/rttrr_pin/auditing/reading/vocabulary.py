@@ -68,7 +68,13 @@ class Vocabulary:
         """
         self._names: dict[Atom, str] = {}
         for spelling, name in spellings.items():
-            atom = _atom(spelling)
+            try:
+                atom = atom_of(spelling)
+            except UnreadableError as error:
+                raise InputError(
+                    f"`{spelling}` is no spelling of a symbol: {error.placed(spelling)}; "
+                    r"wanted one letter with its scripts and accents, such as `\dot{q}_1`"
+                ) from error
             if self._names.setdefault(atom, name) != name:
                 raise InputError(
                     f"`{spelling}` is to be {name}, but the same symbol is {self._names[atom]} already: "
@@ -121,13 +127,3 @@ class Vocabulary:
 
 def _plain(text: str) -> str:
     return "".join(character for character in text.replace("'", "prime") if character.isalnum())
-
-
-def _atom(spelling: str) -> Atom:
-    try:
-        return atom_of(spelling)
-    except UnreadableError as error:
-        raise InputError(
-            f"`{spelling}` is no spelling of a symbol: {error.placed(spelling)}; "
-            r"wanted one letter with its scripts and accents, such as `\dot{q}_1`"
-        ) from error
