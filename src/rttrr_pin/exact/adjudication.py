@@ -118,7 +118,6 @@ def walk(model: Model) -> Iterator[tuple[str, int]]:
 
 def in_order(model: Model, deviations: Sequence[Deviation]) -> tuple[Deviation, ...]:
     """Deviations by quantity and place, in the order in which the recursion completes them."""
-    columns = {"tau": model.v_names} | dict.fromkeys(LINK_QUANTITIES, model.link_names)
-    by_place = {(one.quantity, one.at): one for one in deviations}
-    places = ((quantity, columns[quantity][place]) for quantity, place in walk(model))
-    return tuple(by_place[place] for place in places if place in by_place)
+    names = {"tau": model.v_names} | dict.fromkeys(LINK_QUANTITIES, model.link_names)
+    order = {(quantity, names[quantity][place]): k for k, (quantity, place) in enumerate(walk(model))}
+    return tuple(sorted(deviations, key=lambda one: order[one.quantity, one.at]))

@@ -35,11 +35,10 @@ NO_INERTIA = UrdfInertial(Placement(), ZERO, dict.fromkeys(ATTRIBUTES["inertia"]
 BASE_JOINT = UrdfJoint("", 0, "floating", "", "", Placement(), ZEROS, None, None, ZERO, ZERO)
 """A link without <inertial>, and the joint of a floating base, which no file has."""
 
-READ: dict[str, Callable[[Number], Fraction]] = {
-    "read": lambda number: Fraction(float(number)),
-    "text": lambda number: number.exact,
-}
+Exact = Callable[[Number], Fraction]
 """From a number of the file to a rational."""
+
+READ: dict[str, Exact] = {"read": lambda number: Fraction(float(number)), "text": lambda number: number.exact}
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -48,23 +47,18 @@ class ExactParameters:
 
     Attributes:
         model: the robot; mimics, armatures, damping and friction of its joints are rationals.
-        inertials: those of the links, as the file has them.
-        joints: those that carry the links, as the file has them.
+        inertials: of the links, as the file has them.
+        joints: that carry the links, as the file has them.
         exact: from a number of the file to a rational.
     """
 
     model: Model
     inertials: tuple[UrdfInertial, ...]
     joints: tuple[UrdfJoint, ...]
-    exact: Callable[[Number], Fraction]
+    exact: Exact
 
     def bodies(self, arithmetic: Arithmetic, inverse_root: InverseRoot) -> list[Body]:
-        """The links and joints in scalars.
-
-        Args:
-            arithmetic: makes scalars of rationals, and their sines.
-            inverse_root: 1 / sqrt(x) of a rational, for axes whose length is irrational.
-        """
+        """The links and joints in scalars; `inverse_root` is 1 / sqrt(x), for axes whose length is irrational."""
 
         def number(x: Fraction) -> Scalar:
             return arithmetic.number(x, 0.0)  # type: ignore[arg-type]
@@ -101,11 +95,7 @@ class ExactParameters:
 
 @lru_cache(maxsize=16)
 def exact_parameters(model: Model, parameters: Literal["read", "text"]) -> ExactParameters:
-    """The parameters in the file that a model was read from.
-
-    Args:
-        model: the robot.
-        parameters: `"text"`: the decimals of the file; `"read"`: the doubles nearest to them.
+    """The parameters in the file that a model was read from: its decimals, or the doubles nearest to them.
 
     Raises:
         InputError: the model was made from numbers, or altered since it was read.
@@ -122,13 +112,12 @@ def exact_parameters(model: Model, parameters: Literal["read", "text"]) -> Exact
         )
     exact = READ[parameters]
     own = tuple(document.joints.get(joint.name, BASE_JOINT) for joint in model.joints)
-    links = (document.links.get(link.name) for link in model.links)
-    inertials = tuple((link.inertial if link else None) or NO_INERTIA for link in links)
+    inertials = tuple(document.links[link.name].inertial or NO_INERTIA for link in model.links)
     joints = tuple(_joint(joint, document, exact) for joint in model.joints)
     return ExactParameters(replace(model, joints=joints), inertials, own, exact)
 
 
-def _joint(joint: Joint, document: UrdfDocument, exact: Callable[[Number], Fraction]) -> Joint:
+def _joint(joint: Joint, document: UrdfDocument, exact: Exact) -> Joint:
     """The joint with rationals for multiplier and offset, through the whole chain of mimics, and for its effects."""
     own = document.joints.get(joint.name, BASE_JOINT)
     mimic: Any = joint.mimic
@@ -144,10 +133,9 @@ def _joint(joint: Joint, document: UrdfDocument, exact: Callable[[Number], Fract
         """That of the file, unless it was set since."""
         return exact(of_file) if float(of_file) == set_since else Fraction(set_since)
 
-    effects = joint.effects
+    effects, armature = joint.effects, Fraction(joint.effects.armature)
     damping, friction = number(own.damping, effects.damping), number(own.friction, effects.friction)
-    armature: Any = Fraction(effects.armature)
-    return replace(joint, mimic=mimic, effects=JointEffects(armature, damping, friction))
+    return replace(joint, mimic=mimic, effects=JointEffects(armature, damping, friction))  # type: ignore[arg-type]
 
 
 def _differences(model: Model, read: Model) -> Iterator[str]:

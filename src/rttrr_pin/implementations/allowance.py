@@ -49,15 +49,15 @@ def norm(vectors: Array) -> Array:
 
 def carriers(model: Model) -> list[list[Carrier]]:
     """For each degree of freedom the vectors that its driving force is made of: its own, and those of followers."""
-    found: dict[int, list[list[Carrier]]] = {
+    parts: dict[int, list[list[Carrier]]] = {
         i: [[(1.0, "n" if rotates else "f", i)] for rotates in model.joints[i].type.rotations]
         for i in model.independent
     }
     for i, joint in enumerate(model.joints):
         if joint.mimic is not None:
             weight = abs(joint.mimic.multiplier)
-            found[joint.mimic.joint][0].append((weight, "n" if joint.type.rotations[0] else "f", i))
-    return [freedom for i in model.independent for freedom in found[i]]
+            parts[joint.mimic.joint][0].append((weight, "n" if joint.type.rotations[0] else "f", i))
+    return [freedom for i in model.independent for freedom in parts[i]]
 
 
 def of_bounds(bounds: LinkWrenches) -> dict[str, Array]:
@@ -148,14 +148,10 @@ def _length(joint: JointType, parts: Sequence[Any], rotates: bool, rows: int) ->
 def add_inwards(parents: Sequence[int], f: Array, n: Array, reach: Array) -> None:
     """Add the sizes of forces and moments on each body to those on its parent, in place, (N, bodies) each.
 
-    Args:
-        parents: by body; -1 where there is none; parents before children.
-        f: sizes of forces.
-        n: sizes of moments.
-        reach: at most how far a body's origin is from its parent's [m]; zero where moments are about one point.
+    The parent is -1 where there is none. `reach` is at most how far a body's origin is from its parent's [m]; zero
+    where all moments are about one point.
     """
-    for i in reversed(range(len(parents))):
-        p = parents[i]
+    for i, p in reversed(list(enumerate(parents))):
         if p >= 0:
             f[:, p] += f[:, i]
             n[:, p] += n[:, i] + reach[:, i] * f[:, i]
@@ -176,8 +172,3 @@ def _of_carriers(model: Model, wide: Mapping[str, Array]) -> Array:
         sum((weight * wide[key][:, link] for weight, key, link in parts), np.zeros(rows)) for parts in carriers(model)
     ]
     return np.stack(columns, axis=1) if columns else np.zeros((rows, 0))
-
-
-def _finite(sizes: Array) -> Array:
-    """What is not finite must not widen the tolerance of what else is compared with it."""
-    return np.where(np.isfinite(sizes), sizes, 0.0)

@@ -132,13 +132,9 @@ def urdf_of(model: Model, program: str) -> str:
 
 
 def differs(what: str, expected: ArrayLike, built: ArrayLike, scale: float = 0.0) -> Iterator[str]:
-    """A line, if two numbers or arrays are apart by more than rounding.
+    """A line, if what a library built is apart from what is expected by more than rounding.
 
-    Args:
-        what: they are, in words.
-        expected: what the file says.
-        built: what the library has.
-        scale: of what was rounded on the way, where that is larger than the numbers themselves.
+    `scale` is that of what was rounded on the way, where it is larger than the numbers themselves.
     """
     x, y = np.asarray(expected, dtype=float), np.asarray(built, dtype=float)
     size = max(float(np.linalg.norm(x)), scale)

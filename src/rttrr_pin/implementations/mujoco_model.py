@@ -29,23 +29,22 @@ from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints import CONTINUOUS, FIXED, FLOATING, PLANAR, PRISMATIC, REVOLUTE
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.errors import ImplementationError, ModelMismatchError
-from rttrr_pin.implementations.library import (
-    LibraryJoint,
-    differs,
-    followers,
-    inertia_differences,
-    library_joints,
-    limit_differences,
-    mimic_differences,
-    placement_differences,
-    urdf_of,
-)
+from rttrr_pin.implementations import library
 
 PREFIX = "link "
 """Before the name of each link: MuJoCo has a body of its own that is called world."""
 
 END = "."
 """Behind the name of each joint: MuJoCo appends to those of planar joints, and drops what is called so already."""
+
+MARKED = (
+    ("link", "name", PREFIX, ""),
+    ("joint/parent", "link", PREFIX, ""),
+    ("joint/child", "link", PREFIX, ""),
+    ("joint", "name", "", END),
+    ("joint/mimic", "joint", "", END),
+)
+"""Elements and attributes that are names of links or joints, and what is put before and behind."""
 
 DROPPED = ("mujoco", "visual", "collision")
 
@@ -74,7 +73,7 @@ def build(model: Model) -> Any:
     """
     with _without_log():
         try:
-            spec = mujoco.MjSpec.from_string(_bare(urdf_of(model, "MuJoCo")))
+            spec = mujoco.MjSpec.from_string(_bare(library.urdf_of(model, "MuJoCo")))
             bodies = {body.name: body for body in spec.bodies}
             if lines := [*_differences(model, bodies), *_mimic_differences(model, spec)]:
                 raise ModelMismatchError("MuJoCo", lines)
@@ -90,7 +89,7 @@ def build(model: Model) -> Any:
     return compiled
 
 
-def mujoco_joints(model: Model, compiled: Any) -> list[LibraryJoint]:
+def mujoco_joints(model: Model, compiled: Any) -> list[library.LibraryJoint]:
     """The moving joints, in our order; of those that MuJoCo makes one of, the number of the first."""
 
     def place(joint: Joint, link: Link) -> tuple[int, slice, slice]:
@@ -98,7 +97,7 @@ def mujoco_joints(model: Model, compiled: Any) -> list[LibraryJoint]:
         q, v = int(compiled.jnt_qposadr[first]), int(compiled.jnt_dofadr[first])
         return first, slice(q, q + joint.nq), slice(v, v + joint.nv)
 
-    return library_joints(model, place)
+    return library.library_joints(model, place)
 
 
 def rotation_of(quaternion: Any) -> Array:
@@ -151,15 +150,9 @@ def _bare(urdf: str) -> str:
     root = etree.fromstring(urdf.encode(), etree.XMLParser(encoding="utf-8"))
     for element in list(root.iter(*DROPPED)):
         element.getparent().remove(element)
-    for link in root.findall("link"):
-        link.set("name", PREFIX + link.get("name", ""))
-    for tag in ("parent", "child"):
-        for end in root.iterfind(f"joint/{tag}"):
-            end.set("link", PREFIX + end.get("link", ""))
-    for element, key in [(x, "name") for x in root.findall("joint")] + [
-        (x, "joint") for x in root.iterfind("joint/mimic")
-    ]:
-        element.set(key, element.get(key, "") + END)
+    for path, key, before, behind in MARKED:
+        for element in root.iterfind(path):
+            element.set(key, before + element.get(key, "") + behind)
     text: str = etree.tostring(root, encoding="unicode")
     return text
 
@@ -173,7 +166,7 @@ def _differences(model: Model, bodies: dict[str, Any]) -> Iterator[str]:
         return
     for i, (joint, link) in enumerate(zip(model.joints, model.links, strict=True)):
         body = bodies[PREFIX + link.name]
-        yield from inertia_differences(link, (link.mass, link.com, link.inertia), _inertial(body))
+        yield from library.inertia_differences(link, (link.mass, link.com, link.inertia), _inertial(body))
         if not (model.floating and i == 0):
             yield from _joint_differences(model, joint, body)
 
@@ -184,7 +177,7 @@ def _joint_differences(model: Model, joint: Joint, body: Any) -> Iterator[str]:
     parent = model.links[joint.parent].name if joint.parent >= 0 else model.root.name
     if body.parent.name != PREFIX + parent:
         yield f"{here}: hangs on {body.parent.name.removeprefix(PREFIX)!r}, the file says {parent!r}"
-    yield from placement_differences(joint, (joint.R, joint.p), rotation_of(body.quat), body.pos)
+    yield from library.placement_differences(joint, (joint.R, joint.p), rotation_of(body.quat), body.pos)
     made_of = MADE_OF[joint.type] if joint.type != FLOATING else (mujoco.mjtJoint.mjJNT_FREE,)
     types, names = tuple(built.type for built in body.joints), [built.name for built in body.joints]
     if names != [joint.name + END + part for part in PARTS.get(joint.type, ("",))]:
@@ -194,24 +187,24 @@ def _joint_differences(model: Model, joint: Joint, body: Any) -> Iterator[str]:
         yield f"{here}: made of {', '.join(map(str, types)) or 'none'}, the file says {joint.type}"
     elif joint.type.has_axis:
         (built,) = body.joints
-        yield from differs(f"{here} axis", joint.axis, unit(built.axis), 1.0)
+        yield from library.differs(f"{here} axis", joint.axis, unit(built.axis), 1.0)
         limits = {"damping": np.ravel(built.damping)[0], "friction": built.frictionloss}
         limits |= {"lower limit": built.range[0], "upper limit": built.range[1]}
         if joint.limits.effort > 0.0:  # at 0 MuJoCo sets none
             limits["effort limit"] = built.actfrcrange[1]
-        yield from limit_differences(joint, limits)
+        yield from library.limit_differences(joint, limits)
 
 
 def _mimic_differences(model: Model, spec: Any) -> Iterator[str]:
     """Whom followers follow, and how, where MuJoCo reads it."""
     read = {equality.name1.removesuffix(END): equality for equality in spec.equalities}
-    for joint in followers(model):
+    for joint in library.followers(model):
         if joint.mimic is not None and joint.name in read:
             built, leader = read[joint.name], model.joints[joint.mimic.joint].name
             if built.name2 != leader + END:
                 follows = built.name2.removesuffix(END)
                 yield f"joint {joint.name!r} mimic: follows {follows!r}, the file says {leader!r}"
-            yield from mimic_differences(joint, built.data[1], built.data[0])
+            yield from library.mimic_differences(joint, built.data[1], built.data[0])
 
 
 def _prepare(spec: Any, model: Model, bodies: dict[str, Any]) -> None:

@@ -15,17 +15,7 @@ from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints import FLOATING
 from rttrr_pin.core.model import Link, Model
-from rttrr_pin.implementations.library import (
-    LibraryJoint,
-    differs,
-    followers,
-    inertia_differences,
-    library_joints,
-    limit_differences,
-    mimic_differences,
-    placement_differences,
-    product,
-)
+from rttrr_pin.implementations import library
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,17 +52,17 @@ class PinLink:
 
     def to_joint(self, f: Array, n: Array) -> Array:
         """A force and a moment at the link's origin, (N, 3) each, at the joint's: (N, 6)."""
-        f, n = product(self.R, f), product(self.R, n)
+        f, n = library.product(self.R, f), library.product(self.R, n)
         return np.concatenate([f, n + np.cross(self.p, f)], axis=1)
 
     def from_joint(self, force: Array) -> Array:
         """A spatial force at the joint's origin, (N, 6), at the link's."""
         f, n = force[:, :3], force[:, 3:]
         n = n - np.cross(self.p, f)
-        return np.concatenate([product(self.R.T, f), product(self.R.T, n)], axis=1)
+        return np.concatenate([library.product(self.R.T, f), library.product(self.R.T, n)], axis=1)
 
 
-def pin_joints(model: Model, pin_model: Any) -> list[LibraryJoint]:
+def pin_joints(model: Model, pin_model: Any) -> list[library.LibraryJoint]:
     """The moving joints, in our order."""
 
     def place(joint: Joint, link: Link) -> tuple[int, slice, slice]:
@@ -80,7 +70,7 @@ def pin_joints(model: Model, pin_model: Any) -> list[LibraryJoint]:
         built = pin_model.joints[number]
         return number, slice(built.idx_q, built.idx_q + built.nq), slice(built.idx_v, built.idx_v + built.nv)
 
-    return library_joints(model, place)
+    return library.library_joints(model, place)
 
 
 def pin_links(model: Model, pin_model: Any) -> list[PinLink]:
@@ -124,7 +114,7 @@ def _joint_differences(model: Model, pin_model: Any, data: Any, i: int) -> Itera
     R, p, ancestor = _placement_on_moving(model, i)
     if not joint.nv:
         frame = pin_model.frames[pin_model.getFrameId(joint.name, pin.FrameType.FIXED_JOINT)]
-        yield from placement_differences(joint, (R, p), frame.placement.rotation, frame.placement.translation)
+        yield from library.placement_differences(joint, (R, p), frame.placement.rotation, frame.placement.translation)
         yield from _inertia_differences(link, _inertia(model, [at_link]), frame.inertia)
         return
     number = pin_model.getJointId(joint.name)
@@ -133,10 +123,10 @@ def _joint_differences(model: Model, pin_model: Any, data: Any, i: int) -> Itera
         hanging_on = pin_model.names[pin_model.parents[number]]
         yield f"joint {joint.name!r}: hangs on {hanging_on!r}, not where the file has it"
     placement, built = pin_model.jointPlacements[number], pin_model.joints[number]
-    yield from placement_differences(joint, (R, p), placement.rotation, placement.translation)
-    yield from differs(f"joint {joint.name!r} axis", _subspace(joint), data.joints[number].S, 1.0)
+    yield from library.placement_differences(joint, (R, p), placement.rotation, placement.translation)
+    yield from library.differs(f"joint {joint.name!r} axis", _subspace(joint), data.joints[number].S, 1.0)
     if joint.type.has_axis:
-        yield from limit_differences(joint, _limits(pin_model, built.idx_q, built.idx_v))
+        yield from library.limit_differences(joint, _limits(pin_model, built.idx_q, built.idx_v))
     merged = [at_link, *((k, *_placement_on_moving(model, k)[:2]) for k in _merged(model, i))]
     yield from _inertia_differences(link, _inertia(model, merged), pin_model.inertias[number])
 
@@ -155,12 +145,12 @@ def _limits(pin_model: Any, q: int, v: int) -> dict[str, float]:
 def _inertia_differences(link: Link, expected: tuple[float, Array, Array], built: Any) -> Iterator[str]:
     mass, com, _ = expected
     scale = mass * float(com @ com)  # what is merged was moved to the common centre of mass
-    yield from inertia_differences(link, expected, (built.mass, built.lever, built.inertia), scale)
+    yield from library.inertia_differences(link, expected, (built.mass, built.lever, built.inertia), scale)
 
 
 def _mimic_differences(model: Model) -> Iterator[str]:
     """Multiplier and offset of followers, where Pinocchio can build them: not if the followed joint sorts later."""
-    joints = followers(model)
+    joints = library.followers(model)
     try:
         pin_model: Any = pin.buildModelFromXML(model.urdf, mimic=True) if joints else None
     except (ValueError, RuntimeError):
@@ -169,7 +159,7 @@ def _mimic_differences(model: Model) -> Iterator[str]:
         number = pin_model.getJointId(joint.name)  # njoints for one that it did not build
         if number < pin_model.njoints and pin_model.joints[number].shortname() == "JointModelMimic":
             built = pin_model.joints[number].extract()
-            yield from mimic_differences(joint, built.scaling, built.offset)
+            yield from library.mimic_differences(joint, built.scaling, built.offset)
 
 
 def _subspace(joint: Joint) -> Array:

@@ -165,13 +165,7 @@ class _Child:
     def ask(self, requests: Sequence[bytes], seconds: float, start: float) -> Iterator[str]:
         """A line for each line, which are all written as fast as the program reads.
 
-        Args:
-            requests: lines.
-            seconds: limit for each reply from the one before.
-            start: limit for the first.
-
-        Raises:
-            _ReplyError: a reply did not come in time, or too much came, or the program has ended.
+        The first must come within `start` seconds, each other within `seconds` from the one before.
         """
         self._unsent = b""
         self._exchange(0.001)

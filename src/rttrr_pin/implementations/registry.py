@@ -20,7 +20,7 @@ from rttrr_pin.errors import ImplementationError, InputError, RttrrError, Unknow
 from rttrr_pin.implementations.function import Function
 from rttrr_pin.implementations.program import Program
 from rttrr_pin.implementations.protocol import Implementation
-from rttrr_pin.implementations.table import Table
+from rttrr_pin.implementations.table import READERS, Table
 
 BUILT_IN = {
     "kernel": "rttrr_pin.implementations.ours:CompiledKernel",
@@ -36,9 +36,6 @@ EXTRAS = ("mujoco",)
 
 GROUP = "rttrr_pin.implementations"
 """The entry points by which other packages add theirs."""
-
-TABLES = (".csv", ".parquet", ".jsonl")
-"""How the files of results end."""
 
 Source: TypeAlias = str | os.PathLike[str] | Implementation | Callable[..., Any]
 """What stands for an implementation: see `make_implementation`."""
@@ -78,7 +75,7 @@ def make_implementation(source: Source, model: Model) -> Implementation:
     for point in metadata.entry_points(group=GROUP):
         if point.name == text:
             return _of_package(point, model)
-    if Path(text).suffix.lower() in TABLES:
+    if Path(text).suffix.lower() in READERS:
         return Table(Path(text), model)
     if _is_command(text):
         return Program(text, model)

@@ -63,7 +63,7 @@ class Table:
             ImplementationError: Parquet, and pyarrow is not installed.
         """
         self.name, self.model = path.name, model
-        columns, lines = _READERS[path.suffix.lower()](path, model)
+        columns, lines = READERS[path.suffix.lower()](path, model)
         names = _wanted(columns, column_names(model), self.name)
         self.quantities = tuple(key for key in QUANTITIES if key in names)
         parsed = {key: _numbers(columns, names[key], lines, self.name) for key in names}
@@ -139,12 +139,7 @@ def _alike(digits: Digits, printed: Sequence[Digits]) -> bool:
 
 
 def _wanted(columns: Columns, known: Mapping[str, list[str]], name: str) -> dict[str, list[str]]:
-    """The columns of each array that the table has.
-
-    Raises:
-        InputError: a state or result is not there, or only in part.
-        UnknownNameError: a column looks like one of these, and the robot has no such joint or link.
-    """
+    """The columns of each array that the table has; an error if one is there in part, or of another robot."""
     every = {column for names in known.values() for column in names}
     for column in columns:
         if column not in every and column.partition("_")[0] in known and "_" in column:
@@ -278,4 +273,5 @@ def _lines_of(path: Path) -> Iterator[tuple[int, str]]:
         raise InputError(f"{path} is no UTF-8 text: {error.reason} at byte {error.start}") from error
 
 
-_READERS = {".csv": _csv, ".jsonl": _json_lines, ".parquet": _parquet}
+READERS = {".csv": _csv, ".jsonl": _json_lines, ".parquet": _parquet}
+"""By the end of the file's name."""
