@@ -80,10 +80,23 @@ def own_states(model: Model, batch: Batch) -> list[Any]:
     return [state for joint, state in zip(model.joints, states, strict=True) if joint.nv]
 
 
-def joint_forces(
+def driving_forces(
+    model: Model, joints: Sequence[LibraryJoint], states: Sequence[JointState], tau: Array, has_armature: bool
+) -> tuple[Array, Array]:
+    """Tau with what the joints take themselves, and that alone, along our degrees of freedom, (N, nv) each.
+
+    The library's tau, (N, its nv), lacks damping and friction, and armature unless it `has_armature`.
+    """
+    own = _joint_forces(joints, states, tau)
+    missing = _joint_forces(joints, states, tau, armature=False) if has_armature else own
+    whole, tau_joint = (_reduced(model, joints, forces) for forces in (tau + missing, own))
+    return whole, tau_joint
+
+
+def _joint_forces(
     joints: Sequence[LibraryJoint], states: Sequence[JointState], like: Array, armature: bool = True
 ) -> Array:
-    """The forces that joints take themselves, like the library's tau, (N, nv); armature only where that lacks it."""
+    """The forces that joints take themselves, in the columns of the library's tau."""
     out = np.zeros_like(like)
     for joint, state in zip(joints, states, strict=True):
         effects = joint.joint.effects if armature else replace(joint.joint.effects, armature=0.0)
@@ -93,14 +106,11 @@ def joint_forces(
     return out
 
 
-def reduce_forces(model: Model, joints: Sequence[LibraryJoint], forces: Array) -> Array:
-    """Forces of a library's joints, (N, its nv), as forces along the degrees of freedom of the robot, (N, nv)."""
+def _reduced(model: Model, joints: Sequence[LibraryJoint], forces: Array) -> Array:
+    """Forces of a library's joints as forces along the degrees of freedom of the robot."""
     columns = iter([*forces[:, joint.v].T] for joint in joints)
     by_joint: list[Any] = [next(columns) if joint.nv else [] for joint in model.joints]
-    out = np.empty((len(forces), model.nv))
-    for k, force in enumerate(generalised_forces(model, FLOAT, by_joint)):
-        out[:, k] = np.asarray(force)
-    return out
+    return np.array(generalised_forces(model, FLOAT, by_joint)).reshape(model.nv, len(forces)).T.copy()
 
 
 def product(matrix: Array, vectors: Array) -> Array:

@@ -37,7 +37,7 @@ from rttrr_pin.core.payload import Load
 from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.implementations.allowance import add_inwards, levels, norm, of_library
-from rttrr_pin.implementations.library import LibraryJoint, Motion, joint_forces, own_states, product, reduce_forces
+from rttrr_pin.implementations.library import LibraryJoint, Motion, driving_forces, own_states, product
 from rttrr_pin.implementations.mujoco_model import PREFIX, build, mujoco_joints, rotation_of
 from rttrr_pin.implementations.protocol import Batch, Evaluation
 
@@ -76,9 +76,8 @@ class Mujoco:
         states = own_states(self.model, batch)
         motion = Motion.of(self.joints, states, len(batch), self.compiled.nq, self.compiled.nv, convert)
         record = self._run(motion, batch.loads)
-        own = joint_forces(self.joints, states, record.tau)
-        whole = self._in_links(record.tau, turns) + own
-        tau, tau_joint = (reduce_forces(self.model, self.joints, x) for x in (whole, own))
+        moved = self._in_links(record.tau, turns)
+        tau, tau_joint = driving_forces(self.model, self.joints, states, moved, has_armature=False)
         values = {"tau": tau} | self._wrenches(record)
         cancelling = _rounding(self.compiled, self.bodies, motion, record, batch.loads)
         return Evaluation(values, of_library(batch, values, tau_joint, cancelling), tau_joint)

@@ -38,16 +38,7 @@ from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.errors import ImplementationError, ModelMismatchError
 from rttrr_pin.implementations.allowance import add_inwards, norm, of_library
-from rttrr_pin.implementations.library import (
-    LibraryJoint,
-    Motion,
-    joint_forces,
-    norms,
-    own_states,
-    product,
-    reduce_forces,
-    urdf_of,
-)
+from rttrr_pin.implementations.library import LibraryJoint, Motion, driving_forces, norms, own_states, product, urdf_of
 from rttrr_pin.implementations.pinocchio_model import PinLink, differences, pin_joints, pin_links
 from rttrr_pin.implementations.protocol import Batch, Evaluation
 
@@ -106,10 +97,7 @@ class Pinocchio:
         record = self._run(motion, loads)
         F, N = self._net(record)
         f, n, moments = self._across_joints(record, F, N, loads)
-        own = joint_forces(self.joints, states, record.tau)
-        # `rnea` has armature in it, and neither damping nor friction.
-        whole = record.tau + joint_forces(self.joints, states, record.tau, armature=False)
-        tau, tau_joint = (reduce_forces(self.model, self.joints, x) for x in (whole, own))
+        tau, tau_joint = driving_forces(self.model, self.joints, states, record.tau, has_armature=True)
         values = {"tau": tau, "F": F, "N": N, "f": f, "n": n}
         cancelling = _rounding(self.pin_model, self.links, record.spatial, self._reach(motion))
         for i, (links, hanging) in self._held.items():
