@@ -199,6 +199,7 @@ def enclosing_doubles(x: arb) -> tuple[float, float]:
     middle = float(x)
     if not math.isfinite(middle):
         return middle, middle
+    # A comparison of intervals holds only where it holds for all their numbers: `not x >= y` does not mean x < y.
     below = middle if x >= middle else math.nextafter(middle, -math.inf)
     above = middle if x <= middle else math.nextafter(middle, math.inf)
     if x >= below and x <= above:

@@ -92,9 +92,10 @@ def straight_line(model: Model, frames: LoadFrames, parameters: Parameters) -> S
 
 def _program(graph: Graph, squares: dict[int, Fraction], width: int, results: list[int]) -> StraightLine:
     """Compile the recorded graph to Python functions; `squares` are those whose inverse roots are inputs."""
+    # What no state changes is computed once for each precision and handed to each run.
     order = graph.reachable(results)
     constants = [x for x in order if graph.op[x] is Op.CONSTANT or x in squares]
-    fixed = set(constants)  # what no state changes
+    fixed = set(constants)
     for x in order:
         if graph.op[x] is not Op.INPUT and fixed.issuperset(graph.args[x]):
             fixed.add(x)

@@ -33,13 +33,11 @@ class LibraryJoint:
 
     Attributes:
         joint: ours.
-        number: the library's number of it.
         q: where its coordinates are in the library's q.
         v: where its rates are in the library's v, a, tau.
     """
 
     joint: Joint
-    number: int
     q: slice
     v: slice
 
@@ -68,8 +66,8 @@ Convert = Callable[[LibraryJoint, Array, Array, Array], tuple[Array, Array, Arra
 """From a joint's q, v, a in our convention to those in the library's."""
 
 
-def library_joints(model: Model, place: Callable[[Joint, Link], tuple[int, slice, slice]]) -> list[LibraryJoint]:
-    """The moving joints, in our order; `place` gives a library's number, q and v of the joint that carries a link."""
+def library_joints(model: Model, place: Callable[[Joint, Link], tuple[slice, slice]]) -> list[LibraryJoint]:
+    """The moving joints, in our order; `place` says where a library has q and v of the joint that carries a link."""
     pairs = zip(model.joints, model.links, strict=True)
     return [LibraryJoint(joint, *place(joint, link)) for joint, link in pairs if joint.nv]
 

@@ -90,12 +90,12 @@ def build(model: Model) -> Any:
 
 
 def mujoco_joints(model: Model, compiled: Any) -> list[library.LibraryJoint]:
-    """The moving joints, in our order; of those that MuJoCo makes one of, the number of the first."""
+    """The moving joints, in our order."""
 
-    def place(joint: Joint, link: Link) -> tuple[int, slice, slice]:
-        first = int(compiled.body_jntadr[compiled.body(PREFIX + link.name).id])
+    def place(joint: Joint, link: Link) -> tuple[slice, slice]:
+        first = compiled.body_jntadr[compiled.body(PREFIX + link.name).id]  # of those that MuJoCo makes one of
         q, v = int(compiled.jnt_qposadr[first]), int(compiled.jnt_dofadr[first])
-        return first, slice(q, q + joint.nq), slice(v, v + joint.nv)
+        return slice(q, q + joint.nq), slice(v, v + joint.nv)
 
     return library.library_joints(model, place)
 

@@ -167,6 +167,7 @@ class Pinocchio:
             if not link.fixed:
                 out[:, i] = record.spatial[:, 0, link.joint]
                 continue
+            # Pinocchio keeps no force across a fixed joint: it is what moves the links behind it and all they carry.
             total = np.zeros((rows, 6))
             for arm, f, at_body in self._behind(i, record, F, N, loads):
                 total += at_body
@@ -208,7 +209,7 @@ class Pinocchio:
         out = np.tile([np.linalg.norm(x.translation) for x in self.pin_model.jointPlacements], (len(motion.q), 1))
         for joint in self.joints:
             lengths = sum(own.unit == "m" for own in joint.joint.type.coordinates)  # they come first
-            out[:, joint.number] += norm(motion.q[:, joint.q][:, :lengths])
+            out[:, self.pin_model.getJointId(joint.joint.name)] += norm(motion.q[:, joint.q][:, :lengths])
         return out
 
 

@@ -65,10 +65,9 @@ class PinLink:
 def pin_joints(model: Model, pin_model: Any) -> list[library.LibraryJoint]:
     """The moving joints, in our order."""
 
-    def place(joint: Joint, link: Link) -> tuple[int, slice, slice]:
-        number = pin_model.getJointId(joint.name)
-        built = pin_model.joints[number]
-        return number, slice(built.idx_q, built.idx_q + built.nq), slice(built.idx_v, built.idx_v + built.nv)
+    def place(joint: Joint, link: Link) -> tuple[slice, slice]:
+        built = pin_model.joints[pin_model.getJointId(joint.name)]
+        return slice(built.idx_q, built.idx_q + built.nq), slice(built.idx_v, built.idx_v + built.nv)
 
     return library.library_joints(model, place)
 

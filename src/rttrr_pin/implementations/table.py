@@ -134,6 +134,7 @@ def _normalise(model: Model, q: Array, half: Array) -> None:
 
 def _alike(digits: Digits, printed: Sequence[Digits]) -> bool:
     """Whether the numbers of a state were printed as results were, with as many digits or as many decimals."""
+    # States are printed in other units than results, so that a fixed count of decimals is alike too.
     result = min(printed, key=lambda own: own.significant)
     return digits.significant >= result.significant or digits.decimals >= max(result.decimals, 1)
 
