@@ -237,16 +237,17 @@ class _Child:
         return f"was ended by signal {-code}" if code < 0 else f"ended with exit code {code}"
 
     def end(self, patience: float = 0.0) -> str:
-        """End its input and, if it does not leave, itself with all that it has started; the end of its stderr."""
+        """End it, with all that it has started, after its input if there is patience; the end of its stderr."""
         if self._output < 0:
             return ""
-        with suppress(OSError):
+        if patience:  # else at once, so that the end of its input leaves no trace on its stderr
             self._stdin.close()
-        with suppress(subprocess.TimeoutExpired):
-            self._process.wait(patience)
+            with suppress(subprocess.TimeoutExpired):
+                self._process.wait(patience)
         with suppress(ProcessLookupError, PermissionError):
             os.killpg(self._process.pid, 9)
         self._process.wait()
+        self._stdin.close()
         if not self._stderr.closed:
             self._read_stderr()
             self._stderr.close()
