@@ -79,7 +79,7 @@ def distances(robot: Robot, batch: Batch, enclosures: Enclosures, program: str) 
     by_quantity: dict[str, list[Array]] = {}
     differences = comparison.differences(batch, computed, Evaluation(true, exact, computed.tau_joint))
     for row, difference in zip(comparison.rows, differences, strict=True):
-        if (difference.error > difference.of_subject).any():
+        if (difference.of_tolerance > 1.0).any():
             raise SystemExit(f"{program} is beyond its allowance in {row.quantity} at {row.at}")
         by_quantity.setdefault(row.quantity, []).append(difference.relative)
     return {quantity: np.max(columns, axis=0) for quantity, columns in by_quantity.items()}

@@ -24,7 +24,7 @@ from kernel_speed_limits import available_states, copy, operations, peak
 from kernel_speed_report import check, compare, plot, show
 from peers_run import ENVIRONMENTS, PEERS, Array, interpreter, requirements, run_peer
 from rttrr_pin.implementations import Batch
-from rttrr_pin.validation.states import Sampler
+from rttrr_pin.validation.sampling import Sampler
 
 sys.path.insert(0, str(PEERS))
 import pinocchio_parallel

@@ -8,7 +8,7 @@ import pytest
 from rttrr_pin import RandomPayload, Robot, load, validate
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.implementations import Batch, Implementation, default_allowance, make_implementation, names
-from rttrr_pin.validation.states import Sampler
+from rttrr_pin.validation.sampling import Sampler
 
 
 @pytest.fixture(scope="module")

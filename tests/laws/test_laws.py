@@ -24,8 +24,7 @@ from rttrr_pin.exact.intervals import INTERVAL, interval, precision
 from rttrr_pin.implementations import Batch
 from rttrr_pin.laws import LawReport, check_laws
 from rttrr_pin.laws.case import Case
-from rttrr_pin.laws.run import error_over_bound
-from rttrr_pin.laws.table import LAWS
+from rttrr_pin.laws.run import LAWS, error_over_bound
 from rttrr_pin.validation import SAMPLINGS, Sampler
 from support.implementations import altered
 from support.mutants import EQUIVALENT, Mutant, mutant, mutants, planted
@@ -178,7 +177,7 @@ def test_interval_arithmetic_proves_the_laws_at_a_state(rttrr: Robot) -> None:
 def test_the_outcome_does_not_depend_on_blocks(rttrr: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
     chosen = ("E201", "M403", "M405", "S")
     whole = check_laws(rttrr, n_states=130, seed=5, select=chosen)
-    monkeypatch.setattr("rttrr_pin.laws.run.BLOCK", 32)
+    monkeypatch.setattr("rttrr_pin.validation.states.BLOCK", 32)
     seen: list[int] = []
     assert check_laws(rttrr, n_states=130, seed=5, select=chosen, progress=seen.append).rows == whole.rows
     assert seen == [32, 64, 96, 128, 130]

@@ -16,8 +16,8 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.exact import Adjudication, Assessment, enclose
 from rttrr_pin.implementations import Batch, Evaluation
 from rttrr_pin.validation import Sampler, compare_state, validate
-from rttrr_pin.validation.adjudicate import adjudicate, true_parameters
 from rttrr_pin.validation.compare import ADJUDICATED, Ranking
+from rttrr_pin.validation.comparison import adjudicate, true_parameters
 from support.implementations import Spoil, altered, evaluated
 from support.serial_chains import EXAMPLES
 
@@ -180,7 +180,7 @@ def ratio_at(robot: Robot, reference: Any, state: int) -> float:
 def test_a_run_adjudicates_the_worst_failing_states_and_the_worst_passing_one(
     rttrr: Robot, monkeypatch: pytest.MonkeyPatch, limit: float, several: bool
 ) -> None:
-    monkeypatch.setattr("rttrr_pin.validation.run.BLOCK", 64)
+    monkeypatch.setattr("rttrr_pin.validation.states.BLOCK", 64)
     wrong = altered(rttrr, beyond(limit))
     result = validate(rttrr, "kernel", wrong, 150)
     assert result.worst is not None

@@ -77,7 +77,7 @@ def test_a_systematic_error_of_a_few_eps_of_the_norm_is_not_hidden(rttrr: Robot)
 
 def test_the_outcome_does_not_depend_on_blocks(rttrr: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
     whole = validate(rttrr, n_states=700, payload=RandomPayload())
-    monkeypatch.setattr("rttrr_pin.validation.run.BLOCK", 64)
+    monkeypatch.setattr("rttrr_pin.validation.states.BLOCK", 64)
     cut = validate(rttrr, n_states=700, payload=RandomPayload())
     assert whole.rows == cut.rows
 

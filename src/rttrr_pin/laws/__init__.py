@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rttrr_pin.laws.run import LawReport, LawRow, check_laws
-from rttrr_pin.laws.table import LAWS, Law
+from rttrr_pin.laws.law import Law
+from rttrr_pin.laws.run import LAWS, LawReport, LawRow, check_laws
 
 __all__ = ["LAWS", "Law", "LawReport", "LawRow", "check_laws"]

@@ -66,7 +66,11 @@ class Case:
     @cached_property
     def gravity(self) -> Vector:
         """The field in base axes."""
-        return Vector.of(self.model.gravity, lambda value: self.arithmetic.number(value, 0.0))
+        return self.vector(*self.model.gravity)
+
+    def vector(self, *values: float) -> Vector:
+        """Three exact numbers as scalars."""
+        return Vector.of(values, lambda value: self.arithmetic.number(value, 0.0))
 
     @cached_property
     def result(self) -> Result:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -15,42 +15,47 @@ from rttrr_pin.core.energy import gyroscopic
 from rttrr_pin.core.scalars import UNIT_ROUNDOFF
 from rttrr_pin.exact.rounding import Bounded, values_and_bounds
 from rttrr_pin.laws.case import Case, Rows
+from rttrr_pin.laws.law import law
 
 EIGENVALUES = 32
 """Backward error of symmetric eigenvalues in units of n u |M| (LAPACK Users' Guide, section 4.7: a modest p(n))."""
 
 
+@law("M401", "symmetric")
 def symmetric(case: Case) -> Iterator[Scalar]:
-    """M_ij - M_ji."""
+    """The forces of unit accelerations make a symmetric mass matrix: M_ij = M_ji."""
     M = case.mass_matrix
     for i in range(len(M)):
         for j in range(i):
             yield M[i][j] - M[j][i]
 
 
+@law("M402", "kinetic energy")
 def of_kinetic_energy(case: Case) -> Iterator[Scalar]:
-    """M_ij - d^2 T / dv_i dv_j."""
+    """The mass matrix is the second derivative of the kinetic energy: M_ij = d^2 T / dv_i dv_j."""
     for row, expected in zip(case.mass_matrix, case.kinetic_matrix, strict=True):
         yield from (x - y for x, y in zip(row, expected, strict=True))
 
 
+@law("M403", "positive definite")
 def positive_definite(case: Case) -> Iterator[Scalar]:
-    """The smallest eigenvalue of M, where it is negative.
+    """No motion has a negative kinetic energy: the smallest eigenvalue of M is not below zero.
 
     Eigenvalues change by at most the norm of the error of M (Weyl), and by the rounding of their computation. Links
     without mass make M semidefinite, so zero passes.
     """
     if not case.model.nv:
         return
-    M, error = _matrix(case.mass_matrix, len(_rows(case)))
-    if not np.isfinite(M).all():
+    M, error = _matrix(case.mass_matrix, _states(case))
+    if np.isfinite(M).all():
+        yield Bounded(np.minimum(_smallest_eigenvalue(M), 0.0), _eigenvalue_error(M, error))
+    else:
         yield Bounded(np.full(len(M), np.nan), 0.0)
-        return
-    yield Bounded(np.minimum(np.linalg.eigvalsh(_mean(M))[:, 0], 0.0), _eigenvalue_error(M, error))
 
 
+@law("M404", "skew")
 def skew(case: Case) -> Iterator[Scalar]:
-    """S_ij + S_ji of S = M' - 2 C, with C the Coriolis matrix of the connection without torsion.
+    """M' - 2 C is skew, for the C without torsion with C v = tau(q, v, 0) without gravity.
 
     The velocity forces c(q, v), a quadratic form in v, fix its symmetric part: C v = c and 2 C = dc/dv - M A, where A
     is zero for rates that are derivatives of coordinates and A^T p the gyroscopic forces of the momenta p of twists
@@ -68,8 +73,9 @@ def skew(case: Case) -> Iterator[Scalar]:
         yield from (S[i][j] + S[j][i] for j in range(i + 1))
 
 
+@law("M405", "forward of inverse")
 def forward(case: Case) -> Iterator[Scalar]:
-    """M^-1 (tau - tau(q, v, 0)) - a, with M from the kinetic energy and the armatures, where M can be inverted.
+    """Forward dynamics undo inverse dynamics: M^-1 (tau - tau(q, v, 0)) = a, with M of the kinetic energy.
 
     For M x = r with an error of at most E in M and e in r, and the residual rho of the computed x:
     |x - a| <= |M^-1| (E |a| + e + |rho|), which is doubled, since the inverse is rounded too.
@@ -78,21 +84,21 @@ def forward(case: Case) -> Iterator[Scalar]:
         return
     still = case.forces(a=case.at_rest).tau
     inertial = [x - y for x, y in zip(case.result.tau, still, strict=True)]
-    rows = len(_rows(case))
+    n, rows = case.model.nv, _states(case)
     r, e = values_and_bounds(inertial, rows)
     a, _ = values_and_bounds(case.a, rows)
     M, E = _matrix(_with_armature(case), rows)
     if not (np.isfinite(M).all() and np.isfinite(r).all()):
         yield Bounded(np.full(rows, np.nan), 0.0)
         return
-    regular = np.linalg.eigvalsh(_mean(M))[:, 0] > _eigenvalue_error(M, E)
-    M = np.where(regular[:, None, None], M, np.eye(case.model.nv))
+    regular = _smallest_eigenvalue(M) > _eigenvalue_error(M, E)
+    M = np.where(regular[:, None, None], M, np.eye(n))
     inverse = np.asarray(np.linalg.inv(M), dtype=np.float64)
     x = _times(inverse, r)
-    rounded = (case.model.nv + 2) * UNIT_ROUNDOFF * (_times(abs(M), abs(x)) + abs(r))
+    rounded = (n + 2) * UNIT_ROUNDOFF * (_times(abs(M), abs(x)) + abs(r))
     off = _times(E, abs(a)) + e + abs(r - _times(M, x)) + rounded
     difference, bound = x - a, 2.0 * _times(abs(inverse), off) + 2 * UNIT_ROUNDOFF * abs(a)
-    for j in range(case.model.nv):
+    for j in range(n):
         yield Bounded(np.where(regular, difference[:, j], 0.0), bound[:, j])
 
 
@@ -113,22 +119,22 @@ def _with_armature(case: Case) -> Rows:
     return M
 
 
-def _rows(case: Case) -> Array:
-    """An array with the batch's number of states."""
+def _states(case: Case) -> int:
+    """How many states a batch of scalars (value, bound) has."""
     rate: Any = case.v[0]
-    return np.atleast_1d(rate.value)
+    return int(np.size(rate.value))
 
 
 def _matrix(rows: Rows, count: int) -> tuple[Array, Array]:
     """Values and bounds, (N, n, n)."""
-    flat: Sequence[Scalar] = [x for row in rows for x in row]
-    values, bounds = values_and_bounds(flat, count)
     n = len(rows)
+    values, bounds = values_and_bounds([x for row in rows for x in row], count)
     return values.reshape(count, n, n), bounds.reshape(count, n, n)
 
 
-def _mean(M: Array) -> Array:
-    return (M + M.swapaxes(1, 2)) / 2
+def _smallest_eigenvalue(M: Array) -> Array:
+    """That of the symmetric part, (N,)."""
+    return np.asarray(np.linalg.eigvalsh((M + M.swapaxes(1, 2)) / 2)[:, 0], dtype=np.float64)
 
 
 def _eigenvalue_error(M: Array, error: Array) -> Array:

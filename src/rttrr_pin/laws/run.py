@@ -3,29 +3,29 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.batch import blocks
-from rttrr_pin.core.inputs import whole_number
+from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load, RandomPayload
-from rttrr_pin.errors import InputError
+from rttrr_pin.errors import InputError, UnknownNameError
 from rttrr_pin.exact.rounding import values_and_bounds
 from rttrr_pin.implementations import Batch, Implementation, label, make_implementation
 from rttrr_pin.implementations.registry import Source
+from rttrr_pin.laws import balance, matrix, symmetry
 from rttrr_pin.laws.case import Case
-from rttrr_pin.laws.table import Law, chosen
+from rttrr_pin.laws.law import Law
 from rttrr_pin.robot import Robot
-from rttrr_pin.validation.compare import Worst
-from rttrr_pin.validation.comparison import Payload, described, resolved, table_of
-from rttrr_pin.validation.states import LAST_STATE, Sampler
+from rttrr_pin.validation.compare import Worst, ratio
+from rttrr_pin.validation.sampling import Payload, Sampler
+from rttrr_pin.validation.states import Progress, States, check_count, described, model_of
 
-BLOCK = 1024
-"""States checked at a time: the memory of a run is that of one block."""
+LAWS = tuple(law for module in (balance, matrix, symmetry) for law in vars(module).values() if isinstance(law, Law))
+"""In the order of their ids."""
 
 RECURSION = "recursion"
 """The subject that all laws can be checked on."""
@@ -128,7 +128,7 @@ def check_laws(
     sampling: str = "uniform",
     payload: Payload = RandomPayload(),  # noqa: B008 - frozen
     select: Iterable[str] = (),
-    progress: Callable[[int], None] | None = None,
+    progress: Progress | None = None,
 ) -> LawReport:
     """Check the laws of mechanics on random states.
 
@@ -155,34 +155,28 @@ def check_laws(
         ImplementationError: the subject is missing, refuses the robot, or dies.
         UnknownNameError: there is no such sampling or law.
     """
-    laws = chosen(select)
-    whole_number("n_states", n_states, 1, LAST_STATE, "10^15, since none would prove nothing")
-    if not isinstance(robot, Robot):
-        raise InputError(f"robot is a {type(robot).__name__}: pass a Robot, such as rttrr_pin.load({robot!r})")
-    if not robot.model.links:
-        raise InputError(f"robot {robot.name!r} has no joint, so that no law says anything of it")
+    laws = _chosen(select)
+    check_count(n_states)
+    model = model_of(robot, "no law says anything of it")
     start = time.perf_counter()
-    program = make_implementation(subject, robot.model)
+    program = make_implementation(subject, model)
     whole = subject == RECURSION
     rows = tuple(LawRow(law) for law in (laws if whole else _checkable(laws, program)))
-    load = _resolved(robot, payload)
-    sampler, table = Sampler(robot.model, sampling, seed, load), table_of([program], load)
-    if table is not None:
-        n_states = len(table)
-    for part in blocks(n_states, BLOCK):
-        batch = _part(table, part) if table is not None else sampler.draw(part.start, part.stop - part.start)
+    acting = payload
+    if isinstance(payload, RandomPayload) and payload.link is None:
+        acting = replace(payload, link=model.link_names[-1])  # which every robot has, and only one of
+    states = States(Sampler(model, sampling, seed, acting), [program])
+    for batch in states.blocks(n_states, progress):
         if isinstance(payload, RandomPayload):
-            batch = replace(batch, loads=(*batch.loads, _in_base_axes(robot, batch.loads[0])))
+            batch = replace(batch, loads=(*batch.loads, _in_base_axes(model, batch.loads[0])))
         with np.errstate(all="ignore"):  # what overflows is not zero, and counts as a violation
             _check(rows, Case.of(batch, None if whole else program), batch)
-        if progress is not None:
-            progress(part.stop)
     return LawReport(
         robot=robot.name,
-        base="floating" if robot.model.floating else "fixed",
+        base="floating" if model.floating else "fixed",
         subject=label(program),
-        n_states=n_states,
-        sampling=sampling if table is None else "table",
+        n_states=states.count(n_states),
+        sampling=states.sampling,
         seed=seed,
         payload=described(payload),
         rows=rows,
@@ -193,9 +187,8 @@ def check_laws(
 def error_over_bound(law: Law, case: Case, count: int) -> Array:
     """|residual| / error bound of each number, (N, numbers); infinite where one is not finite."""
     values, bounds = values_and_bounds(list(law.residual(case)), count)
-    with np.errstate(all="ignore"):
-        ratios = np.where(values == 0.0, 0.0, np.abs(values) / bounds)
-    ratios[np.isnan(ratios) | ~np.isfinite(bounds)] = np.inf
+    ratios = ratio(np.abs(values), bounds)
+    ratios[~np.isfinite(bounds)] = np.inf
     return ratios
 
 
@@ -221,19 +214,15 @@ def _checkable(laws: Iterable[Law], program: Implementation) -> list[Law]:
     return checkable
 
 
-def _resolved(robot: Robot, payload: Payload) -> Load | RandomPayload | None:
-    """For the sampler; a random payload without a link acts at the last one, which every robot has."""
-    if isinstance(payload, RandomPayload) and payload.link is None:
-        return replace(payload, link=robot.link_names[-1])
-    return resolved(robot, payload)
-
-
-def _in_base_axes(robot: Robot, load: Load) -> Load:
+def _in_base_axes(model: Model, load: Load) -> Load:
     """Another random load, at a link further in."""
-    return Load(len(robot.link_names) // 2, load.f[:, ::-1], load.n[:, ::-1], in_base=True)
+    return Load(len(model.links) // 2, load.f[:, ::-1], load.n[:, ::-1], in_base=True)
 
 
-def _part(table: Batch, part: slice) -> Batch:
-    """Some states of a table."""
-    loads = tuple(load.block(part) for load in table.loads)
-    return Batch(table.model, table.q[part], table.v[part], table.a[part], loads, part.start)
+def _chosen(select: Iterable[str]) -> list[Law]:
+    """The laws whose ids begin with one of the prefixes; all laws without a prefix."""
+    prefixes = tuple(select)
+    for prefix in prefixes:
+        if not prefix or not any(law.id.startswith(prefix) for law in LAWS):
+            raise UnknownNameError("law", prefix, [law.id for law in LAWS])
+    return [law for law in LAWS if not prefixes or law.id.startswith(prefixes)]

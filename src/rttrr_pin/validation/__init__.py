@@ -6,8 +6,8 @@ from rttrr_pin.core.scalars import EPS
 from rttrr_pin.validation.compare import Comparison, Row
 from rttrr_pin.validation.many import BASES, Entry, Task, validate_many
 from rttrr_pin.validation.run import ReferenceSummary, Validation, validate
+from rttrr_pin.validation.sampling import SAMPLINGS, Sampler
 from rttrr_pin.validation.state import StateComparison, StateReport, compare_state
-from rttrr_pin.validation.states import SAMPLINGS, Sampler
 
 __all__ = [
     "BASES",

@@ -113,8 +113,8 @@ def _validate_several(
     sources: dict[str, Path], options: RunOptions, states: int, json: str | None, quiet: bool, full: bool
 ) -> int:
     """One table for many robots."""
-    from rttrr_pin.validation.many import BASES, Task, validate_many
-    from rttrr_pin.validation.report import many_data, show_many
+    from rttrr_pin.validation.many import BASES, Task, many_data, validate_many
+    from rttrr_pin.validation.report import show_many
 
     allowed = ("--subject", "--reference", "--seed", "--sampling")
     refused = [word for word in options.unusual() if word.startswith("--") and word not in allowed]

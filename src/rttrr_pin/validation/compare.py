@@ -107,19 +107,12 @@ class Difference:
     Attributes:
         error: |subject - reference|.
         size: |reference|.
-        of_subject: what the subject's rounding may make of it.
-        of_reference: what the reference's may.
+        tolerance: what rounding can explain.
     """
 
     error: Array
     size: Array
-    of_subject: Array
-    of_reference: Array
-
-    @property
-    def tolerance(self) -> Array:
-        """What rounding can explain."""
-        return self.of_subject + self.of_reference
+    tolerance: Array
 
     @property
     def relative(self) -> Array:
@@ -160,21 +153,19 @@ class Comparison:
             np.maximum(ratios, of_tolerance, out=ratios)
         for quantity, worst in self.whole.items():
             x, y = (side.values[quantity].reshape(len(batch), -1) for side in (subject, reference))
-            worst.see(ratio(_or_infinite(norm(x - y)), EPS * norm(y)), first)
+            worst.see(ratio(_or(norm(x - y), np.inf), EPS * norm(y)), first)
         return ratios
 
     def differences(self, batch: Batch, subject: Evaluation, reference: Evaluation) -> Iterator[Difference]:
         """The difference of each row, in the order of `rows`."""
-        allowances = [_allowance(batch, side) for side in (subject, reference)]
+        allowance, other = (_allowance(batch, side) for side in (subject, reference))
         for key in self.quantities:
             x, y = subject.values[key], reference.values[key]
             errors = np.abs(x - y) if key == "tau" else norm(x - y)
             lengths = self._sizes_of_tau(batch, subject, reference) if key == "tau" else norm(y)
-            errors = np.where(np.isfinite(errors), errors, np.inf)  # as far off as can be
-            lengths = np.where(np.isfinite(lengths), lengths, 0.0)
-            for column in range(errors.shape[1]):
-                parts = (side[key][:, column] for side in allowances)
-                yield Difference(errors[:, column], lengths[:, column], *parts)
+            errors, lengths = _or(errors, np.inf), _or(lengths, 0.0)  # as far off as can be
+            for columns in zip(errors.T, lengths.T, (allowance[key] + other[key]).T, strict=True):
+                yield Difference(*columns)
 
     def _sizes_of_tau(self, batch: Batch, subject: Evaluation, reference: Evaluation) -> Array:
         """The norms of the vectors that driving forces are components of, (N, nv)."""
@@ -191,11 +182,12 @@ class Comparison:
 def _allowance(batch: Batch, evaluation: Evaluation) -> Mapping[str, Array]:
     """What rounding may make of a result; what is not finite excuses nothing."""
     known = default_allowance(batch) if evaluation.allowance is None else evaluation.allowance
-    return {key: np.where(np.isfinite(x), x, 0.0) for key, x in known.items()}
+    return {key: _or(x, 0.0) for key, x in known.items()}
 
 
-def _or_infinite(lengths: Array) -> Array:
-    return np.where(np.isfinite(lengths), lengths, np.inf)
+def _or(values: Array, otherwise: float) -> Array:
+    """The values, and something else for what is not finite."""
+    return np.where(np.isfinite(values), values, otherwise)
 
 
 def ratio(part: Array, whole: Array) -> Array:

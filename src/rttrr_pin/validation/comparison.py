@@ -2,31 +2,32 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
-from rttrr_pin.core.payload import Load, RandomPayload
-from rttrr_pin.core.wrench import Wrench
 from rttrr_pin.errors import InputError
-from rttrr_pin.exact import Adjudication
+from rttrr_pin.exact.adjudication import Adjudication, Assessment, Deviation, in_order, nearest
+from rttrr_pin.exact.enclosures import Enclosures, enclose
+from rttrr_pin.exact.parameters import Parameters, exact_parameters
 from rttrr_pin.implementations import Batch, Evaluation, Implementation, make_implementation, make_references
 from rttrr_pin.implementations.registry import Source
 from rttrr_pin.robot import Robot
-from rttrr_pin.validation.adjudicate import adjudicate
-from rttrr_pin.validation.compare import Comparison, Difference, Ranking, Row
-from rttrr_pin.validation.states import Sampler
+from rttrr_pin.validation.compare import Comparison, Difference, Ranking
+from rttrr_pin.validation.sampling import Payload, Sampler
+from rttrr_pin.validation.states import States, model_of
 
 HUGE = 1e140
 """Numbers whose squares, times anything that occurs, stay within float64."""
 
-Payload = Wrench | RandomPayload | None
-"""None; a wrench, the same in every state; or a random one in each."""
-
 References = Source | list[Source] | tuple[Source, ...]
 """One reference or several."""
+
+QUIET = np.errstate(over="ignore", invalid="ignore")
+"""What overflows or is no number is a deviation like any other, and is shown with its state."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,21 +35,15 @@ class Run:
     """What is compared with what, and what was seen.
 
     Attributes:
-        model: the robot.
-        sampler: draws the states.
-        subject: the program that is judged.
-        references: those that it is compared with.
+        states: those that are compared.
+        programs: the subject, which is judged, and the references that it is compared with.
         comparisons: gather the differences, one for each reference.
-        table: the states that the subject or a reference brings with it; None where they are drawn.
         ranking: the states to look at again, by the largest error / tolerance against any reference.
     """
 
-    model: Model
-    sampler: Sampler
-    subject: Implementation
-    references: tuple[Implementation, ...]
+    states: States
+    programs: tuple[Implementation, ...]
     comparisons: tuple[Comparison, ...]
-    table: Batch | None = None
     ranking: Ranking = field(default_factory=Ranking)
 
     @classmethod
@@ -61,17 +56,13 @@ class Run:
             InputError: an argument cannot be used, or the programs have no quantity in common.
             ImplementationError: a program is missing, refuses the robot, or built another model than the file says.
         """
-        if not isinstance(robot, Robot):
-            raise InputError(f"robot is a {type(robot).__name__}: pass a Robot, such as rttrr_pin.load({robot!r})")
-        if not robot.model.links:
-            raise InputError(f"robot {robot.name!r} has no joint, so that there is nothing to compare")
-        model = robot.model
-        load = resolved(robot, payload)
-        sampler = Sampler(model, sampling, seed, load)
+        model = model_of(robot, "there is nothing to compare")
+        sampler = Sampler(model, sampling, seed, payload)
         judged = make_implementation(subject, model)
-        others = tuple(make_references(reference, model))
+        references = make_references(reference, model)
+        programs = (judged, *references)
         comparisons = []
-        for other in others:
+        for other in references:
             common = [key for key in judged.quantities if key in other.quantities]
             if not common:
                 raise InputError(
@@ -79,97 +70,80 @@ class Run:
                     f"{', '.join(other.quantities)}: there is nothing to compare"
                 )
             comparisons.append(Comparison(model, common))
-        return cls(model, sampler, judged, others, tuple(comparisons), table_of([judged, *others], load))
+        states = States(sampler, programs, compiled=any(program.name == "kernel" for program in programs))
+        return cls(states, programs, tuple(comparisons))
 
     @property
-    def rows(self) -> list[tuple[Implementation, Row]]:
-        """What was seen of each quantity at each place, reference by reference."""
-        pairs = zip(self.references, self.comparisons, strict=True)
-        return [(reference, row) for reference, comparison in pairs for row in comparison.rows]
+    def subject(self) -> Implementation:
+        """The program that is judged."""
+        return self.programs[0]
 
-    def states(self, first: int, count: int) -> Batch:
-        """States of the table, or drawn ones."""
-        compiled = any(program.name == "kernel" for program in (self.subject, *self.references))
-        if self.table is None:
-            return replace(self.sampler.draw(first, count), compiled=compiled)
-        part = slice(first, first + count)
-        loads = tuple(load.block(part) for load in self.table.loads)
-        table = self.table
-        return Batch(self.model, table.q[part], table.v[part], table.a[part], loads, first, compiled)
+    @property
+    def references(self) -> tuple[Implementation, ...]:
+        """Those that it is compared with."""
+        return self.programs[1:]
 
+    @QUIET
     def evaluate(self, batch: Batch) -> list[Evaluation]:
-        """What each program makes of a batch, the subject first; what overflows is shown later, with its state."""
-        with np.errstate(over="ignore", invalid="ignore"):
-            results = [program.evaluate(batch) for program in (self.subject, *self.references)]
-            _check_size(batch, results[0])
+        """What each program makes of a batch, the subject first."""
+        results = [program.evaluate(batch) for program in self.programs]
+        _check_size(batch, results[0])
         return results
 
+    @QUIET
     def add(self, batch: Batch) -> None:
         """Take in some states."""
         subject, *others = self.evaluate(batch)
-        with np.errstate(over="ignore", invalid="ignore"):
-            ratios = [
-                comparison.add(batch, subject, other)
-                for comparison, other in zip(self.comparisons, others, strict=True)
-            ]
+        pairs = zip(self.comparisons, others, strict=True)
+        ratios = [comparison.add(batch, subject, other) for comparison, other in pairs]
         self.ranking.see(np.max(ratios, axis=0), batch.first)
 
-    def differences(self, batch: Batch, results: list[Evaluation]) -> list[list[Difference]]:
+    @QUIET
+    def differences(self, batch: Batch, results: Sequence[Evaluation]) -> list[list[Difference]]:
         """How far the subject is from each reference, row by row."""
         subject, *others = results
         pairs = zip(self.comparisons, others, strict=True)
-        with np.errstate(over="ignore", invalid="ignore"):
-            return [list(comparison.differences(batch, subject, other)) for comparison, other in pairs]
+        return [list(comparison.differences(batch, subject, other)) for comparison, other in pairs]
 
-    def adjudicate(self, batch: Batch, results: list[Evaluation]) -> Adjudication:
+    def adjudicate(self, batch: Batch, results: Sequence[Evaluation]) -> Adjudication:
         """Who is right in one state, by the exact reference."""
-        names = [program.name for program in (self.subject, *self.references)]
-        with np.errstate(over="ignore", invalid="ignore"):
-            return adjudicate(batch, list(zip(names, results, strict=True)))
+        return adjudicate(batch, [(program.name, x) for program, x in zip(self.programs, results, strict=True)])
 
 
-def table_of(programs: list[Implementation], load: Load | RandomPayload | None) -> Batch | None:
-    """The states of the table among the programs, with the payload that its results were computed with."""
-    tables = [program for program in programs if hasattr(program, "states")]
-    if not tables:
-        return None
-    first, *others = (table.states() for table in tables)
-    for table, states in zip(tables[1:], others, strict=True):
-        same = all(np.array_equal(getattr(first, x), getattr(states, x)) for x in "qva")
-        if not same:
-            raise InputError(f"{tables[0].name} and {table.name} are of different states: compare them one by one")
-    if isinstance(load, RandomPayload):
-        raise InputError(
-            f"{tables[0].name} has its own states, and no random payload: pass the wrench it was made with, or none"
-        )
-    whole: Batch = replace(first, loads=() if load is None else (load,))
-    return whole
+@QUIET
+def adjudicate(batch: Batch, results: Sequence[tuple[str, Evaluation]]) -> Adjudication:
+    """Who is right in a state: each program against enclosures of the true values, within its own allowance.
+
+    The tolerance is the sum of the allowances, so where a state is beyond it, at least one program is beyond its own.
+
+    Args:
+        batch: the state, a batch of one.
+        results: by name, what each program gave, the subject first.
+    """
+    enclosures = enclose(batch.model, batch.q, batch.v, batch.a, batch.loads, true_parameters(batch.model))
+    assessments = tuple(_assessment(batch, enclosures, name, evaluation) for name, evaluation in results)
+    return Adjudication(batch.first, int(np.max(enclosures.bits)), assessments)
 
 
-def resolved(robot: Robot, payload: Payload) -> Load | RandomPayload | None:
-    """For the sampler: the load, or the random one at a link that has a name."""
-    if payload is None:
-        return None
-    if isinstance(payload, RandomPayload):
-        link = robot.link_names[robot.payload_link(payload.link)]
-        return RandomPayload(link, payload.force, payload.moment)
-    if not isinstance(payload, Wrench):
-        raise InputError(f"payload is {payload!r}: expected None, a Wrench or a RandomPayload()")
-    load = robot.load_of(payload)
-    if load.f.ndim > 1 or load.n.ndim > 1:
-        raise InputError("the payload of a validation has a batch axis: pass one force and one moment of 3 numbers")
-    return load
+def _assessment(batch: Batch, enclosures: Enclosures, name: str, evaluation: Evaluation) -> Assessment:
+    """How far one program is off the true values of one state, quantity by quantity, in the order of the recursion."""
+    true = nearest(enclosures, evaluation.values)
+    truth = Evaluation(true, {key: np.zeros(x.shape[:2]) for key, x in true.items()}, evaluation.tau_joint)
+    comparison = Comparison(batch.model, tuple(true))
+    deviations = [
+        Deviation(row.quantity, row.at, float(one.relative[0]), float(one.of_tolerance[0]))
+        for row, one in zip(comparison.rows, comparison.differences(batch, evaluation, truth), strict=True)
+    ]
+    return Assessment(name, in_order(batch.model, deviations))
 
 
-def described(payload: Payload) -> str:
-    """A payload as reports name it."""
-    if payload is None:
-        return "none"
-    if isinstance(payload, RandomPayload):
-        return "random"
-    axes = "base axes" if payload.expressed_in == "base" else "link axes"
-    f, n = (np.asarray(x, dtype=float).tolist() for x in (payload.force, payload.moment))
-    return f"force {f} N, moment {n} N m at {payload.link or 'the tool'}, {axes}"
+def true_parameters(model: Model) -> Parameters:
+    """Whose numbers decide who is right: the file's, as any program reads them; without a file, the model's own."""
+    try:
+        exact_parameters(model, "read")
+    except InputError:
+        return "doubles"
+    return "read"
 
 
 def _check_size(batch: Batch, subject: Evaluation) -> None:

@@ -4,21 +4,27 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Iterator, Mapping
-from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from dataclasses import asdict, dataclass
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal, get_args
 
 from rttrr_pin.core.inputs import whole_number
 from rttrr_pin.errors import ModelMismatchError, RttrrError, UnknownNameError
 from rttrr_pin.implementations import names
 from rttrr_pin.loading import load
 from rttrr_pin.validation.run import validate
-from rttrr_pin.validation.states import LAST_STATE, SAMPLINGS
+from rttrr_pin.validation.sampling import SAMPLINGS
+from rttrr_pin.validation.states import check_count
 
-BASES: tuple[Literal["fixed", "floating"], ...] = ("fixed", "floating")
+Base = Literal["fixed", "floating"]
+
+Verdict = Literal["agree", "disagree", "unusable"]
+
+BASES: tuple[Base, ...] = get_args(Base)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +65,7 @@ class Entry:
 
     name: str
     base: str
-    verdict: Literal["agree", "disagree", "unusable"]
+    verdict: Verdict
     joints: int = 0
     links: int = 0
     eps: float = 0.0
@@ -86,10 +92,15 @@ def validate_many(
     Returns:
         Two entries for each source, in their order; none is left out.
     """
-    _check(task)
+    check_count(task.n_states)  # what is wrong for every robot is an error once, not a row for each
+    if task.sampling not in SAMPLINGS:
+        raise UnknownNameError("sampling", task.sampling, SAMPLINGS)
+    for program in (task.subject, task.reference):
+        if program not in names():
+            raise UnknownNameError("implementation", program, names())
     if workers is not None:
         whole_number("workers", workers, 1, 10_000)
-    jobs = [(name, str(path), base, task) for name, path in sources.items() for base in BASES]
+    jobs = [(name, Path(path), base, task) for name, path in sources.items() for base in BASES]
     entries: dict[int, Entry] = {}
     for number, entry in _run(jobs, min(workers or os.cpu_count() or 1, len(jobs) or 1)):
         entries[number] = entry
@@ -98,27 +109,13 @@ def validate_many(
     return [entries[number] for number in range(len(jobs))]
 
 
-def _check(task: Task) -> None:
-    """What is wrong for every robot is an error once, not a row for each."""
-    whole_number("n_states", task.n_states, 1, LAST_STATE, "10^15, since none would prove nothing")
-    if task.sampling not in SAMPLINGS:
-        raise UnknownNameError("sampling", task.sampling, SAMPLINGS)
-    for program in (task.subject, task.reference):
-        if program not in names():
-            raise UnknownNameError("implementation", program, names())
-
-
-Job = tuple[str, str, Literal["fixed", "floating"], Task]
-
-
-def _run(jobs: list[Job], workers: int) -> Iterator[tuple[int, Entry]]:
+def _run(jobs: Sequence[tuple[str, Path, Base, Task]], workers: int) -> Iterator[tuple[int, Entry]]:
     """Outcomes as they come; an interrupt ends the workers."""
     pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"))
     try:
-        futures: dict[Future[Entry], int] = {pool.submit(_one, job): number for number, job in enumerate(jobs)}
-        while futures:
-            for future in wait(futures, return_when=FIRST_COMPLETED).done:
-                yield futures.pop(future), future.result()
+        futures = {pool.submit(_entry, *job): number for number, job in enumerate(jobs)}
+        for future in as_completed(futures):
+            yield futures[future], future.result()
     except BaseException:
         for process in list(pool._processes.values()):
             process.terminate()
@@ -127,16 +124,15 @@ def _run(jobs: list[Job], workers: int) -> Iterator[tuple[int, Entry]]:
         pool.shutdown(wait=True, cancel_futures=True)
 
 
-def _one(job: Job) -> Entry:
+def _entry(name: str, path: Path, base: Base, task: Task) -> Entry:
     """One robot on one base."""
-    name, path, base, task = job
     start = time.perf_counter()
     try:
-        robot = load(Path(path), base=base)
+        robot = load(path, base=base)
         result = validate(robot, task.subject, task.reference, task.n_states, task.seed, task.sampling)
     except RttrrError as error:
-        verdict: Literal["disagree", "unusable"] = "disagree" if isinstance(error, ModelMismatchError) else "unusable"
-        defect = str(error).replace(str(path), Path(path).name)
+        verdict: Verdict = "disagree" if isinstance(error, ModelMismatchError) else "unusable"
+        defect = str(error).replace(str(path), path.name)
         return Entry(name, base, verdict, defect=defect, seconds=time.perf_counter() - start)
     worst = result.worst
     return Entry(
@@ -150,3 +146,16 @@ def _one(job: Job) -> Entry:
         worst=f"{worst.quantity} at {worst.at}, state {worst.of_tolerance.state}" if worst else "",
         seconds=time.perf_counter() - start,
     )
+
+
+def many_data(entries: Sequence[Entry], task: Task, seconds: float) -> dict[str, Any]:
+    """The outcome of many robots as data for JSON."""
+    counts = Counter[str](entry.verdict for entry in entries)
+    return {
+        "schema": 1,
+        "passed": counts["agree"] == len(entries),
+        **asdict(task),
+        "verdicts": {verdict: counts[verdict] for verdict in get_args(Verdict)},
+        "entries": [asdict(entry) for entry in entries],
+        "seconds": seconds,
+    }

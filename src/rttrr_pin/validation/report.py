@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -333,16 +333,3 @@ def show_many(entries: Sequence[Entry], task: Task, seconds: float, console: Con
             f"{len(entries)} in all ({seconds:.0f} s)"
         )
     )
-
-
-def many_data(entries: Sequence[Entry], task: Task, seconds: float) -> dict[str, Any]:
-    """The outcome of many robots as data for JSON."""
-    counts = Counter[str](entry.verdict for entry in entries)
-    return {
-        "schema": 1,
-        "passed": counts["agree"] == len(entries),
-        **asdict(task),
-        "verdicts": {verdict: counts[verdict] for verdict in LOOK},
-        "entries": [asdict(entry) for entry in entries],
-        "seconds": seconds,
-    }

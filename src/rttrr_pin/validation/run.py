@@ -4,29 +4,22 @@ from __future__ import annotations
 
 import platform
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field
 from importlib import metadata
 from typing import Any
 
 import numpy as np
 
-from rttrr_pin.core.batch import blocks
-from rttrr_pin.core.inputs import whole_number
 from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.exact import Adjudication
 from rttrr_pin.implementations import Implementation, label
 from rttrr_pin.implementations.registry import Source
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.compare import Comparison, Row, Worst
-from rttrr_pin.validation.comparison import Payload, References, Run, described
-from rttrr_pin.validation.states import LAST_STATE
-
-BLOCK = 1024
-"""States compared at a time; the memory of a run is that of one block, whatever the number of states."""
-
-Progress = Callable[[int], None]
-"""Called with the number of states done so far."""
+from rttrr_pin.validation.comparison import References, Run
+from rttrr_pin.validation.sampling import Payload
+from rttrr_pin.validation.states import Progress, check_count, described
 
 TOLERANCE = "|subject - reference| <= allowance of the subject + allowance of the reference (docs/tolerance.md)"
 
@@ -218,20 +211,13 @@ def validate(
         InputError: an argument cannot be used.
         ImplementationError: a program is missing, refuses the robot, dies, or built another model than the file says.
     """
-    whole_number("n_states", n_states, 1, LAST_STATE, "10^15, since none would prove nothing")
+    check_count(n_states)
     start = time.perf_counter()
     run = Run.of(robot, subject, reference, seed, sampling, payload)
-    if run.table is not None:
-        n_states = len(run.table)
-    for part in blocks(n_states, BLOCK):
-        run.add(run.states(part.start, part.stop - part.start))
-        if progress is not None:
-            progress(part.stop)
-    adjudications = []
-    for state in run.ranking.chosen():
-        batch = run.states(state, 1)
-        adjudications.append(run.adjudicate(batch, run.evaluate(batch)))
-    programs = (run.subject, *run.references)
+    for batch in run.states.blocks(n_states, progress):
+        run.add(batch)
+    chosen = (run.states.batch(state, 1) for state in run.ranking.chosen())
+    adjudications = tuple(run.adjudicate(batch, run.evaluate(batch)) for batch in chosen)
     return Validation(
         robot=robot.name,
         base="floating" if robot.model.floating else "fixed",
@@ -239,15 +225,15 @@ def validate(
         effects={joint.name: joint.effects for joint in robot.model.joints if joint.effects != JointEffects()},
         subject=label(run.subject),
         references=tuple(map(ReferenceSummary.of, run.references, run.comparisons)),
-        n_states=n_states,
-        sampling=sampling if run.table is None else "table",
+        n_states=run.states.count(n_states),
+        sampling=run.states.sampling,
         seed=seed,
         payload=described(payload),
-        notes=tuple(program.note for program in programs if getattr(program, "note", "")),  # type: ignore[attr-defined]
+        notes=tuple(getattr(program, "note", "") for program in run.programs if getattr(program, "note", "")),
         seconds=time.perf_counter() - start,
-        versions=versions(programs),
+        versions=versions(run.programs),
         failing=run.ranking.failing,
-        adjudications=tuple(adjudications),
+        adjudications=adjudications,
     )
 
 

@@ -6,7 +6,6 @@ does: it needs no derivatives, which rounding errors do not have, and takes whol
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,7 +18,9 @@ from rttrr_pin.errors import InputError
 from rttrr_pin.implementations import Batch, label
 from rttrr_pin.implementations.registry import Source
 from rttrr_pin.robot import Robot
-from rttrr_pin.validation.comparison import Payload, References, Run
+from rttrr_pin.validation.comparison import References, Run
+from rttrr_pin.validation.sampling import Payload
+from rttrr_pin.validation.states import Progress
 
 POPULATION = 256
 """States in one generation."""
@@ -82,7 +83,7 @@ def search_worst_state(
     evaluations: int = 20_000,
     seed: int = 0,
     payload: Payload = None,
-    progress: Callable[[int], None] = lambda done: None,
+    progress: Progress = lambda done: None,
 ) -> WorstCase:
     """Look for the state at which a subject and its references differ most, as error / tolerance.
 
@@ -104,9 +105,9 @@ def search_worst_state(
     """
     whole_number("evaluations", evaluations, FEWEST, MOST, "10^9")
     run = Run.of(robot, subject, reference, seed, "uniform", payload)
-    if run.table is not None:
+    if run.states.table is not None:
         raise InputError("a table of results has its own states, and a search makes new ones: name a program")
-    sampler = run.sampler
+    sampler = run.states.sampler
     rng = np.random.default_rng(seed)
     start = rng.random((POPULATION, sampler.numbers))
     done = 0
@@ -139,7 +140,7 @@ def search_worst_state(
     )
     batch = sampler.made_of(np.atleast_2d(optimum.x))
     reached = ratios(batch)[:, 0]
+    pairs = zip(run.references, run.comparisons, strict=True)
+    rows = [(label(reference), row.quantity, row.at) for reference, comparison in pairs for row in comparison.rows]
     worst = int(np.argmax(reached))
-    program, row = run.rows[worst]
-    names = label(run.subject), label(program), row.quantity, row.at
-    return WorstCase(*names, float(reached[worst]), random, done, seed, batch)
+    return WorstCase(label(run.subject), *rows[worst], float(reached[worst]), random, done, seed, batch)

@@ -11,9 +11,9 @@ from rttrr_pin.implementations import Batch, Evaluation, label
 from rttrr_pin.implementations.registry import Source
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.compare import Difference, Row
-from rttrr_pin.validation.comparison import Payload, References, Run
+from rttrr_pin.validation.comparison import References, Run
 from rttrr_pin.validation.run import TOLERANCE, adjudication_dict
-from rttrr_pin.validation.states import LAST_STATE
+from rttrr_pin.validation.sampling import LAST_STATE, Payload
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +36,24 @@ class StateComparison:
     def passed(self) -> bool:
         """Whether every row lies within the tolerance."""
         return all(bool(difference.of_tolerance[0] <= 1.0) for difference in self.differences)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as data for JSON."""
+        pairs = zip(self.rows, self.differences, strict=True)
+        return {
+            "reference": self.reference,
+            "passed": self.passed,
+            "values": {key: x[0].tolist() for key, x in self.result.values.items()},
+            "differences": [
+                {
+                    **{name: getattr(row, name) for name in ("quantity", "at", "unit")},
+                    "error": float(one.error[0]),
+                    "relative_eps": float(one.relative[0]),
+                    "of_tolerance": float(one.of_tolerance[0]),
+                }
+                for row, one in pairs
+            ],
+        }
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,29 +118,9 @@ class StateReport:
             "subject": self.subject,
             "values": {key: x[0].tolist() for key, x in self.result.values.items()},
             "tolerance": TOLERANCE,
-            "references": [_comparison_dict(one) for one in self.comparisons],
+            "references": [one.to_dict() for one in self.comparisons],
             "adjudication": adjudication_dict(self.adjudication),
         }
-
-
-def _comparison_dict(comparison: StateComparison) -> dict[str, Any]:
-    pairs = zip(comparison.rows, comparison.differences, strict=True)
-    return {
-        "reference": comparison.reference,
-        "passed": comparison.passed,
-        "values": {key: x[0].tolist() for key, x in comparison.result.values.items()},
-        "differences": [
-            {
-                "quantity": row.quantity,
-                "at": row.at,
-                "unit": row.unit,
-                "error": float(one.error[0]),
-                "relative_eps": float(one.relative[0]),
-                "of_tolerance": float(one.of_tolerance[0]),
-            }
-            for row, one in pairs
-        ],
-    }
 
 
 def compare_state(
@@ -151,16 +149,11 @@ def compare_state(
     """
     whole_number("state", index, 0, LAST_STATE, "10^15")
     run = Run.of(robot, subject, reference, seed, sampling, payload)
-    if run.table is not None:
-        whole_number("state", index, 0, len(run.table) - 1)
-    batch = run.states(index, 1)
+    if run.states.table is not None:
+        whole_number("state", index, 0, len(run.states.table) - 1)
+    batch = run.states.batch(index, 1)
     results = run.evaluate(batch)
-    comparisons = tuple(
-        StateComparison(label(program), result, tuple(comparison.rows), tuple(differences))
-        for program, result, comparison, differences in zip(
-            run.references, results[1:], run.comparisons, run.differences(batch, results), strict=True
-        )
-    )
+    seen = zip(run.references, results[1:], run.comparisons, run.differences(batch, results), strict=True)
     model = robot.model
     return StateReport(
         robot=robot.name,
@@ -171,6 +164,9 @@ def compare_state(
         batch=batch,
         subject=label(run.subject),
         result=results[0],
-        comparisons=comparisons,
+        comparisons=tuple(
+            StateComparison(label(program), result, tuple(comparison.rows), tuple(differences))
+            for program, result, comparison, differences in seen
+        ),
         adjudication=run.adjudicate(batch, results),
     )
