@@ -65,13 +65,7 @@ def load_all(
     base: Literal["fixed", "floating"] = "fixed",
     friction: bool = False,
 ) -> dict[str, Robot]:
-    """Load every robot in a folder and below.
-
-    Args:
-        folder: a folder with `.urdf` and `.xacro` files.
-        gravity: as in `load`.
-        base: as in `load`.
-        friction: as in `load`.
+    """Load every robot in a folder and below, its `.urdf` and `.xacro` files, each as `load` does.
 
     Returns:
         The robots by the paths of their files from the folder, such as `"arms/panda.urdf"`.

@@ -10,12 +10,13 @@ import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dynamics import bodies
+from rttrr_pin.core.inertia import SpatialInertia
 from rttrr_pin.core.inputs import Coordinates, coordinates, finite, real
 from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.core.model import Model
-from rttrr_pin.core.payload import Load, Payloads, load_of, loads_of, payload_link
+from rttrr_pin.core.payload import Payloads, loads_of
 from rttrr_pin.core.scalars import FLOAT
-from rttrr_pin.core.wrench import RESULTS, LinkWrenches, Wrench
+from rttrr_pin.core.wrench import RESULTS, LinkWrenches
 from rttrr_pin.errors import InputError, NumberError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -25,7 +26,19 @@ if TYPE_CHECKING:
 
 
 class Robot:
-    """A robot and its inverse dynamics.
+    """A robot and its dynamics.
+
+    Coordinates q are (..., nq) [rad or m], rates v and accelerations a (..., nv) [rad/s or m/s, rad/s^2 or m/s^2]; or
+    dicts by joint name. nq is nv, but for floating joints, which have x, y, z and a unit quaternion (x, y, z, w);
+    continuous joints take their angle. The rates of a planar or floating joint are the twist in {i}. Leading axes are
+    batches, and broadcast, those of payloads too. A payload is what the robot exerts on its surroundings; there are
+    several where several links do.
+
+    Every method that takes them raises:
+
+    - ShapeError: an array has not one value for each joint, or leading axes do not broadcast.
+    - NumberError: a value is NaN, inf, complex, ..., or so large that the result overflows.
+    - UnknownNameError, MissingJointError: a dict's keys, or the payload's link, do not exist.
 
     Attributes:
         model: its links and joints as data.
@@ -59,11 +72,7 @@ class Robot:
         return self.model.link_names
 
     def inverse_dynamics(
-        self,
-        q: Coordinates,
-        v: Coordinates,
-        a: Coordinates,
-        payload: Payloads = None,
+        self, q: Coordinates, v: Coordinates, a: Coordinates, payload: Payloads = None
     ) -> LinkWrenches:
         """Driving forces and all joint loads for given motion, by the Newton-Euler recursion.
 
@@ -79,21 +88,8 @@ class Robot:
         It is always compiled code that answers (`compile`), and a state has the same bits alone, in every batch and in
         every layout. The first call compiles, or reads what another process has compiled before.
 
-        Args:
-            q: joint coordinates, (..., nq) [rad or m], or a dict by joint name. nq is nv, but for floating joints,
-                which have x, y, z and a unit quaternion (x, y, z, w); continuous joints take their angle.
-            v: joint rates, (..., nv) [rad/s or m/s]; of a planar or floating joint the twist in {i}.
-            a: joint accelerations, (..., nv) [rad/s^2 or m/s^2].
-            payload: what the robot exerts on its surroundings; several where several links do. Leading axes
-                broadcast with those of q, v, a.
-
         Returns:
             tau (..., nv) and F, N, f, n (..., links, 3), the latter in {i}, the frame of each link.
-
-        Raises:
-            ShapeError: an array has not one value for each joint, or leading axes do not broadcast.
-            NumberError: a value is NaN, inf, complex, ..., or so large that the result overflows.
-            UnknownNameError, MissingJointError: a dict's keys, or the payload's link, do not exist.
         """
         parts = self._kernel(RESULTS)(q, v, a, payload)
         return LinkWrenches.of(parts, self.link_names, self.model.v_names)
@@ -108,18 +104,13 @@ class Robot:
     ) -> Enclosures:
         """Enclose the true tau, F, N, f, n between two doubles each, by interval arithmetic at rising precision.
 
-        The coordinates are exact doubles. Every enclosure is proven, and as narrow as doubles allow: one double or two
-        neighbours, except near zero (see `rttrr_pin.exact.enclose`).
+        Every enclosure is proven, and as narrow as doubles allow: one double or two neighbours, except near zero (see
+        `rttrr_pin.exact.enclose`). The coordinates are exact doubles. A floating joint's quaternion rotates by the
+        matrix that the formula yields, also where its length is 1 only to rounding.
 
-        Args:
-            q: joint coordinates, (..., nq) [rad or m], or a dict by joint name. A floating joint's quaternion rotates
-                by the matrix that the formula yields, also where its length is 1 only to rounding.
-            v: joint rates, (..., nv) [rad/s or m/s].
-            a: joint accelerations, (..., nv) [rad/s^2 or m/s^2].
-            payload: what the robot exerts on its surroundings; leading axes broadcast with those of q, v, a.
-            parameters: the robot's parameters: `"doubles"`, those of the model, rounded rotations and axes included;
-                `"read"`, the doubles nearest to the file's decimals, and everything computed from them exactly;
-                `"text"`, the same from the decimals themselves.
+        The parameters are `"doubles"`, those of the model, rounded rotations and axes included; `"read"`, the doubles
+        nearest to the file's decimals, and everything computed from them exactly; or `"text"`, the same from the
+        decimals themselves.
 
         Returns:
             `.tau` (..., nv) and `.F`, `.N`, `.f`, `.n` (..., links, 3), each with `.lower` and `.upper`, in the frames
@@ -127,7 +118,6 @@ class Robot:
 
         Raises:
             InputError: there are no such parameters: the robot has no file, or was altered since it was read.
-            ShapeError, NumberError, UnknownNameError, MissingJointError: as in `inverse_dynamics`.
         """
         from rttrr_pin.exact.enclosures import enclose
 
@@ -157,8 +147,7 @@ class Robot:
             UnknownNameError: there is no such output, or no such emitter.
             InputError: no output, or one twice; or the emitter cannot be imported.
         """
-        outputs = outputs if isinstance(outputs, str) else tuple(outputs)
-        return self._kernel(outputs, emitter)
+        return self._kernel(outputs if isinstance(outputs, str) else tuple(outputs), emitter)
 
     def _kernel(self, outputs: str | tuple[str, ...], emitter: str | None = None) -> Kernel[Any]:
         kernel = self._kernels.get((outputs, emitter))
@@ -169,77 +158,36 @@ class Robot:
         return kernel
 
     def mass_matrix(self, q: Coordinates) -> Array:
-        """The mass matrix M(q), armature included, symmetric to the last bit.
+        """The mass matrix M(q), armature included, (..., nv, nv) [kg m^2, kg m or kg]; symmetric to the last bit.
 
-        Args:
-            q: coordinates, (..., nq) [rad or m].
-
-        Returns:
-            (..., nv, nv) [kg m^2, kg m or kg]: tau = M a + nonlinear effects.
-
-        Raises:
-            ShapeError, NumberError, UnknownNameError, MissingJointError: as in `inverse_dynamics`.
+        tau = M a + nonlinear effects.
         """
         return cast("Array", self._kernel("mass_matrix")(q))
 
     def nonlinear_effects(self, q: Coordinates, v: Coordinates) -> Array:
-        """The driving forces without acceleration: Coriolis, centrifugal, gravity, and friction of the drives.
-
-        Args:
-            q: coordinates, (..., nq) [rad or m].
-            v: rates, (..., nv) [rad/s or m/s].
-
-        Returns:
-            (..., nv) [N m or N].
-
-        Raises:
-            ShapeError, NumberError, UnknownNameError, MissingJointError: as in `inverse_dynamics`.
-        """
+        """The driving forces without acceleration, (..., nv) [N m or N]: Coriolis, centrifugal, gravity, friction."""
         return cast("Array", self._kernel("nonlinear_effects")(q, v))
 
     def gravity_torque(self, q: Coordinates) -> Array:
-        """The driving forces that hold the robot still.
-
-        Args:
-            q: coordinates, (..., nq) [rad or m].
-
-        Returns:
-            (..., nv) [N m or N].
-
-        Raises:
-            ShapeError, NumberError, UnknownNameError, MissingJointError: as in `inverse_dynamics`.
-        """
+        """The driving forces that hold the robot still, (..., nv) [N m or N]."""
         return cast("Array", self._kernel("gravity_torque")(q))
 
     def regressor(self, q: Coordinates, v: Coordinates, a: Coordinates) -> Array:
-        """Y(q, v, a), by which the driving forces are linear in the inertial parameters: tau - tau_joint = Y pi.
+        """Y(q, v, a), (..., nv, 10 links), by which the driving forces are linear: tau - tau_joint = Y pi.
 
         pi is `inertial_parameters()`: of each link m, m c_x, m c_y, m c_z, I_xx, I_xy, I_yy, I_xz, I_yz, I_zz with the
         tensor about the origin of {i} (Pinocchio's order). Fixed links have columns of their own.
-
-        Args:
-            q: coordinates, (..., nq) [rad or m].
-            v: rates, (..., nv) [rad/s or m/s].
-            a: accelerations, (..., nv) [rad/s^2 or m/s^2].
-
-        Returns:
-            (..., nv, 10 links).
-
-        Raises:
-            ShapeError, NumberError, UnknownNameError, MissingJointError: as in `inverse_dynamics`.
         """
         return cast("Array", self._kernel("regressor")(q, v, a))
 
     def inertial_parameters(self) -> Array:
         """The parameters that `regressor` multiplies, (10 links,), ten for each link."""
-        from rttrr_pin.core.inertia import SpatialInertia
-
-        found: list[Any] = []
+        parameters: list[Any] = []
         for body in bodies(self.model, FLOAT):
             link = SpatialInertia.of(body.M, body.r_C, body.I)
             x, y, z = link.J.rows
-            found += [link.m, *link.h, x.x, x.y, y.y, x.z, y.z, z.z]
-        return np.array(found, dtype=np.float64)
+            parameters += [link.m, *link.h, x.x, x.y, y.y, x.z, y.z, z.z]
+        return np.array(parameters, dtype=np.float64)
 
     def derivatives(
         self, q: Coordinates, v: Coordinates, a: Coordinates, payload: Payloads = None
@@ -249,33 +197,13 @@ class Robot:
         Coordinates of planar and floating joints move as their rates say (the tangent, as Pinocchio has it); the
         payload stays as it is in the axes in which it was given; the jump of Coulomb friction at rest is left out.
 
-        Args:
-            q: coordinates, (..., nq) [rad or m].
-            v: rates, (..., nv) [rad/s or m/s].
-            a: accelerations, (..., nv) [rad/s^2 or m/s^2].
-            payload: what the robot exerts on its surroundings.
-
         Returns:
             d tau / dq, d tau / dv, d tau / da, each (..., nv, nv), row i of tau_i.
-
-        Raises:
-            ShapeError, NumberError, UnknownNameError, MissingJointError: as in `inverse_dynamics`.
         """
-        parts = self._kernel(("dtau_dq", "dtau_dv", "dtau_da"))(q, v, a, payload)
-        return parts["dtau_dq"], parts["dtau_dv"], parts["dtau_da"]
-
-    def load_of(self, wrench: Wrench) -> Load:
-        """A user's wrench at the index of its link.
-
-        Raises:
-            InputError: it is no wrench, or names no link where there are several last ones.
-            UnknownNameError: no link is called so.
-        """
-        return load_of(self.model, wrench)
-
-    def payload_link(self, name: str | None) -> int:
-        """The index of the link that a payload acts at, see `core.payload.payload_link`."""
-        return payload_link(self.model, name)
+        names = ("dtau_dq", "dtau_dv", "dtau_da")
+        parts = self._kernel(names)(q, v, a, payload)
+        dq, dv, da = (parts[name] for name in names)
+        return dq, dv, da
 
     def with_joint_effects(self, effects: Mapping[str, JointEffects]) -> Robot:
         """The same robot, whose joints take torque themselves.
@@ -299,15 +227,11 @@ class Robot:
                 raise InputError(
                     f"the entry of joint {name!r} is a {type(own).__name__}: pass JointEffects(armature=...)"
                 )
-            for field in fields(own):
-                label = f"{field.name} of joint {name!r}"
-                value = finite(label, real(label, getattr(own, field.name)))
+            for effect, number in ((field.name, getattr(own, field.name)) for field in fields(own)):
+                label = f"{effect} of joint {name!r}"
+                value = finite(label, real(label, number))
                 if value.ndim or value < 0.0:
-                    raise NumberError(
-                        f"{label} is {getattr(own, field.name)}: expected one number that is not negative",
-                        name=field.name,
-                        joint=name,
-                        value=getattr(own, field.name),
-                    )
+                    message = f"{label} is {number}: expected one number that is not negative"
+                    raise NumberError(message, name=effect, joint=name, value=number)
         joints = tuple(replace(joint, effects=effects.get(joint.name, joint.effects)) for joint in self.model.joints)
         return Robot(replace(self.model, joints=joints))

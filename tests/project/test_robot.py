@@ -10,6 +10,7 @@ import pytest
 
 import rttrr_pin
 from rttrr_pin import Robot, RttrrError, Wrench
+from rttrr_pin.core.payload import loads_of
 from rttrr_pin.errors import InputError, MissingJointError, NumberError, ShapeError, UnknownNameError
 from support.inputs import BAD, JOINTS, PAYLOADS, ZERO, some
 from support.recursion import recursion
@@ -39,8 +40,7 @@ def test_a_state_gives_the_same_bits_in_any_batch(rttrr: Robot, rows: int) -> No
 def test_it_is_the_recursion_within_rounding(rttrr: Robot) -> None:
     q, v, a = some((99,))
     wrench = Wrench((1.0, 2.0, 3.0), (0.1, 0.2, 0.3), expressed_in="base")
-    load = rttrr.load_of(wrench)
-    reference = recursion(rttrr, q, v, a, [load])
+    reference = recursion(rttrr, q, v, a, loads_of(rttrr.model, wrench))
     for key, x in rttrr.inverse_dynamics(q, v, a, wrench).items():
         assert norm_error(x, getattr(reference, key)) <= ROUNDING
 

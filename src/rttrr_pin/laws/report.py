@@ -8,15 +8,16 @@ from rich.table import Table
 from rich.text import Text
 
 from rttrr_pin.laws.run import LawReport, LawRow
+from rttrr_pin.validation.report import drawn, word
 
 LEGEND = "error / bound: of the residual, which rounding alone keeps below 1"
 
 
 def show_laws(report: LawReport, console: Console) -> None:
     """A row for each law, the statements of those that are violated, and the verdict."""
-    states = "states of the table" if report.sampling == "table" else f"{report.sampling} states, seed {report.seed}"
+    states = drawn(report.n_states, report.sampling, report.seed)
     base = ", floating base" if report.base == "floating" else ""
-    header = f"{report.subject}: laws of mechanics, {report.n_states:,} {states}, payload {report.payload}{base}"
+    header = f"{report.subject}: laws of mechanics, {states}, payload {report.payload}{base}"
     console.print(Text(report.robot, "bold"), Text(header), soft_wrap=True)
     table = Table("law", "", "error / bound", "at state", "violated in", "", box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
     for column in table.columns[2:5]:
@@ -27,9 +28,8 @@ def show_laws(report: LawReport, console: Console) -> None:
     console.print(Text(LEGEND, "dim"), soft_wrap=True)
     for row in report.violated:
         console.print(Text(f"{row.law.id}: {row.law.statement}"), soft_wrap=True)
-    word, _, rest = report.summary().partition(" ")
-    color = "bold green" if report.passed else "bold red"
-    console.print(Text(word, color), Text(f"{rest} ({report.seconds:.1f} s)"), soft_wrap=True)
+    sentence = report.summary().partition(" ")[2]
+    console.print(word(report.passed), Text(f"{sentence} ({report.seconds:.1f} s)"), soft_wrap=True)
 
 
 def _numbers(row: LawRow) -> tuple[str, str, str]:

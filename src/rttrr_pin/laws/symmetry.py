@@ -98,7 +98,7 @@ def under_frames(case: Case) -> Iterator[Scalar]:
 
 @law("S701", "scale of mass")
 def under_mass(case: Case) -> Iterator[Scalar]:
-    """S times the masses take s times the forces."""
+    """s times the masses take s times the forces."""  # noqa: D403 - s is a factor
     links = [replace(body, M=body.M * SCALE, I=body.I * SCALE) for body in case.links]
     yield from _scaled(case.result, case.forces(links=links, payloads=_times(case.payloads, SCALE)), SCALE)
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from collections.abc import Sequence
+from itertools import groupby
+from typing import TYPE_CHECKING
 
 import numpy as np
 from rich.box import SIMPLE_HEAD
 from rich.console import Console
-from rich.table import Table
+from rich.table import Column, Table
 from rich.text import Text
 
 from rttrr_pin.core.arrays import Array
@@ -38,18 +38,12 @@ def show_validation(result: Validation, console: Console, rerun: str = "", full:
         rerun: the words of a command that shows one state, up to the state's number.
         full: whether to show a row for each joint and link.
     """
-    states = "states of the table" if result.sampling == "table" else f"{result.sampling} states, seed {result.seed}"
-    console.print(
-        Text(result.robot, "bold"),
-        Text(
-            f"{result.subject} against {result.reference}: {result.n_states:,} {states}, payload {result.payload}"
-            f"{_unusual(result)}"
-        ),
-    )
-    grouped = _places(result)
-    shown = grouped if full else _worst_places(grouped)
-    console.print(_several_table(result, shown) if len(result.references) > 1 else _table(shown))
-    for line in (*result.notes, LEGEND, *([] if full else [f"the worst of {len(grouped)} rows; --full shows all"])):
+    states = drawn(result.n_states, result.sampling, result.seed)
+    header = f"{result.subject} against {result.reference}: {states}, payload {result.payload}{_unusual(result)}"
+    console.print(Text(result.robot, "bold"), Text(header))
+    places = _places(result)
+    console.print(_table(result, places if full else _worst_of_each_quantity(places)))
+    for line in (*result.notes, LEGEND, *([] if full else [f"the worst of {len(places)} rows; --full shows all"])):
         console.print(Text(line, "dim"), soft_wrap=True)
     _show_verdict(result, console)
     _show_adjudications(result, console)
@@ -59,81 +53,59 @@ def show_validation(result: Validation, console: Console, rerun: str = "", full:
         console.print(Text(f"{at}, in full: {rerun} {worst.of_tolerance.state}"), soft_wrap=True)
 
 
-@dataclass(frozen=True, slots=True)
-class _Place:
-    """One quantity at one link or joint: what was seen there, reference by reference; None where it is not compared."""
-
-    quantity: str
-    at: str
-    rows: tuple[Row | None, ...]
-
-    @property
-    def compared(self) -> list[Row]:
-        """The rows that there are."""
-        return [row for row in self.rows if row is not None]
-
-    @property
-    def of_tolerance(self) -> float:
-        """The largest error / tolerance."""
-        return max(row.of_tolerance.value for row in self.compared)
+def drawn(n_states: int, sampling: str, seed: int) -> str:
+    """How many states, and where they come from."""
+    return f"{n_states:,} " + ("states of the table" if sampling == "table" else f"{sampling} states, seed {seed}")
 
 
-def _places(result: Validation) -> list[_Place]:
+Place = tuple[str, str, dict[int, Row]]
+"""A quantity, a link or joint, and what was seen there, by the number of the reference."""
+
+
+def _places(result: Validation) -> list[Place]:
     """All places, quantity by quantity."""
-    by_reference = [{(row.quantity, row.at): row for row in other.rows} for other in result.references]
-    keys = dict.fromkeys(key for rows in by_reference for key in rows)
-    ordered = sorted(keys, key=lambda key: QUANTITIES.index(key[0]))
-    return [_Place(*key, tuple(rows.get(key) for rows in by_reference)) for key in ordered]
+    places: dict[tuple[str, str], dict[int, Row]] = {}
+    for number, reference in enumerate(result.references):
+        for row in reference.rows:
+            places.setdefault((row.quantity, row.at), {})[number] = row
+    return sorted(((*place, rows) for place, rows in places.items()), key=lambda place: QUANTITIES.index(place[0]))
 
 
-def _worst_places(places: Sequence[_Place]) -> list[_Place]:
-    """The worst place of each quantity."""
-    groups = [[place for place in places if place.quantity == key] for key in QUANTITIES]
-    return [max(group, key=lambda place: place.of_tolerance) for group in groups if group]
+def _worst_of_each_quantity(places: Sequence[Place]) -> list[Place]:
+    def of_tolerance(place: Place) -> float:
+        return max(row.of_tolerance.value for row in place[2].values())
+
+    return [max(group, key=of_tolerance) for _, group in groupby(places, key=lambda place: place[0])]
 
 
-def _table(places: Sequence[_Place]) -> Table:
-    table = Table("", "at", "worst error", "relative (eps)", "error / tolerance", "at state", "", box=None)
-    for column in table.columns:
-        column.no_wrap = True
-    for column in table.columns[2:6]:
-        column.justify = "right"
-    table.columns[1].overflow = "fold"
-    table.columns[1].no_wrap = False
-    _add_rows(table, places, lambda place: (*_numbers_of(place.compared[0]), word(place.compared[0].passed)))
-    return table
-
-
-def _several_table(result: Validation, places: Sequence[_Place]) -> Table:
-    heads = [f"{other.name}: error / tolerance" for other in result.references]
-    table = Table("", "at", *heads, "", box=None)
-    for column in table.columns[2:-1]:
-        column.justify = "right"
-    _add_rows(
-        table,
-        places,
-        lambda place: (*map(_cell, place.rows), word(all(row.passed for row in place.compared))),
-    )
-    return table
-
-
-def _add_rows(table: Table, places: Sequence[_Place], cells: Any) -> None:
-    """A row for each place; the quantity stands at the first of its group."""
-    several = len({place.quantity for place in places}) < len(places)
+def _table(result: Validation, places: Sequence[Place]) -> Table:
+    """A row for each place: all numbers of one reference, or error / tolerance of each of several."""
+    alone = len(result.references) == 1
+    heads = [f"{reference.name}: error / tolerance" for reference in result.references]
+    if alone:
+        heads = ["worst error", "relative (eps)", "error / tolerance", "at state"]
+    table = Table(Column("", no_wrap=alone), Column("at", overflow="fold" if alone else "ellipsis"), box=None)
+    for head in heads:
+        table.add_column(head, justify="right", no_wrap=alone)
+    table.add_column("", no_wrap=alone)
+    grouped = len({place[0] for place in places}) < len(places)
     previous = ""
-    for place in places:
-        if previous and place.quantity != previous and several:
+    for quantity, at, rows in places:
+        if grouped and previous not in ("", quantity):
             table.add_row()
-        table.add_row(place.quantity if place.quantity != previous else "", Text(place.at), *cells(place))
-        previous = place.quantity
+        cells = _numbers_of(rows[0]) if alone else [_cell(rows.get(k)) for k in range(len(heads))]
+        passed = all(row.passed for row in rows.values())
+        table.add_row("" if quantity == previous else quantity, Text(at), *cells, word(passed))
+        previous = quantity
+    return table
 
 
-def _numbers_of(row: Row) -> tuple[str, str, str, str]:
+def _numbers_of(row: Row) -> list[str]:
     """The four numbers of a row; where both are the same bits in every state there is no worst one."""
     if row.absolute.value == 0.0:
-        return "equal", "", "", ""
+        return ["equal", "", "", ""]
     error = f"{row.absolute.value:.1e} {row.unit}"
-    return error, _in_eps(row.relative.value), _ratio(row.of_tolerance.value), str(row.of_tolerance.state)
+    return [error, _in_eps(row.relative.value), _ratio(row.of_tolerance.value), str(row.of_tolerance.state)]
 
 
 def _cell(row: Row | None) -> Text:
@@ -193,9 +165,9 @@ def _show_adjudications(result: Validation, console: Console) -> None:
         which = f"the {shown} worst of " if shown < result.failing else ""
         console.print(Text(f"checked in interval arithmetic, {which}{result.failing:,} failing states:"))
     for number, one in enumerate(result.adjudications):
-        passing = "  worst passing state" if shown else "worst state"
-        check = "" if shown else ", checked in interval arithmetic"
-        head = f"  state {one.state}" if number < shown else f"{passing} {one.state}{check}"
+        head = f"worst state {one.state}, checked in interval arithmetic"
+        if shown:
+            head = f"  state {one.state}" if number < shown else f"  worst passing state {one.state}"
         console.print(Text(f"{head}: {who_is_right(one)}"), soft_wrap=True)
 
 
@@ -203,12 +175,10 @@ def who_is_right(adjudication: Adjudication) -> str:
     """Which programs are within rounding, and where the others are wrong first."""
     right = ", ".join(f"{one.name} {_eps(one.farthest)}" for one in adjudication.right)
     wrong = "; ".join(_wrong(one) for one in adjudication.wrong)
-    if not adjudication.wrong:
+    if not wrong:
         every = "both are" if len(adjudication.right) == 2 else "all are"
         return f"{every} within rounding ({right})"
-    if not adjudication.right:
-        return f"no program is within rounding: {wrong}"
-    return f"within rounding: {right}; {wrong}"
+    return f"within rounding: {right}; {wrong}" if right else f"no program is within rounding: {wrong}"
 
 
 def _wrong(assessment: Assessment) -> str:
@@ -253,8 +223,7 @@ def _show_comparison(report: StateReport, comparison: StateComparison, console: 
         previous = row.quantity
         table.add_row(
             Text(f"{row.at} [{row.unit}]" if row.quantity == "tau" else row.at),
-            "\n".join(f"{x:.15g}" for x in subject),
-            "\n".join(f"{x:.15g}" for x in reference),
+            *("\n".join(f"{x:.15g}" for x in side) for side in (subject, reference)),
             f"{one.error[0]:.1e}",
             _in_eps(one.relative[0]),
             word(bool(one.of_tolerance[0] <= 1.0)),
@@ -266,27 +235,23 @@ def _show_comparison(report: StateReport, comparison: StateComparison, console: 
     console.print(word(comparison.passed), Text(closest))
 
 
-def _by_row(evaluation: Evaluation, rows: Iterable[Row]) -> list[Array]:
-    """The numbers of one state, row by row."""
-    arrays: dict[str, list[Array]] = {key: list(np.atleast_1d(x[0])) for key, x in evaluation.values.items()}
-    positions = Counter[str]()
-    numbers = []
-    for row in rows:
-        numbers.append(np.atleast_1d(arrays[row.quantity][positions[row.quantity]]))
-        positions[row.quantity] += 1
-    return numbers
+def _by_row(evaluation: Evaluation, rows: Sequence[Row]) -> list[Array]:
+    """The numbers of one state, row by row; the rows of a quantity are in the order of its array."""
+    quantities = dict.fromkeys(row.quantity for row in rows)
+    return [np.atleast_1d(x) for quantity in quantities for x in evaluation.values[quantity][0]]
 
 
 def _coordinates_table(report: StateReport) -> Table:
     """q, v, a by name; of a floating joint q has other names than v, a, and stands apart."""
-    numbers = {name: [f"{value:.17g}" for value in getattr(report.batch, name)[0]] for name in "qva"}
     alike = report.q_names == report.v_names
-    table = Table("joint", *("qva" if alike else "va"))
-    for j, label in enumerate(report.v_names):
-        table.add_row(Text(label), *(numbers[name][j] for name in ("qva" if alike else "va")))
+    names = "qva" if alike else "va"
+    q, *others = ([f"{value:.17g}" for value in getattr(report.batch, name)[0]] for name in "qva")
+    table = Table("joint", *names)
+    for label, *numbers in zip(report.v_names, *([q] if alike else []), *others, strict=True):
+        table.add_row(Text(label), *numbers)
     if not alike:
         table.add_section()
-        for label, value in zip(report.q_names, numbers["q"], strict=True):
+        for label, value in zip(report.q_names, q, strict=True):
             table.add_row(Text(f"q of {label}"), value)
     return table
 
@@ -297,35 +262,29 @@ def _short(x: Array) -> str:
 
 def show_search(worst: WorstCase, console: Console) -> None:
     """What a search came to, beside what chance had come to."""
-    verdict, _, sentence = worst.summary().partition(" ")
-    console.print(word(verdict == "PASS"), Text(sentence), soft_wrap=True)
+    console.print(word(worst.passed), Text(worst.summary().partition(" ")[2]), soft_wrap=True)
 
 
-LOOK = {"agree": ("PASS", "bold green"), "disagree": ("FAIL", "bold red"), "unusable": ("FILE", "bold yellow")}
+LOOK = {"agree": word(True), "disagree": word(False), "unusable": Text("FILE", "bold yellow")}
 
 
 def show_many(entries: Sequence[Entry], task: Task, seconds: float, console: Console) -> None:
     """A row for each robot, then what stops those that were not compared, then the sum."""
-    bases = len({entry.base for entry in entries})
-    console.print(
-        Text(
-            f"{len(entries) // bases} robots, {task.subject} against {task.reference}: {task.n_states:,} "
-            f"{task.sampling} states each, seed {task.seed}"
-        )
-    )
+    robots = len(entries) // len({entry.base for entry in entries})
+    states = f"{task.n_states:,} {task.sampling} states each, seed {task.seed}"
+    console.print(Text(f"{robots} robots, {task.subject} against {task.reference}: {states}"))
     table = Table("robot", "base", "joints", "links", "relative (eps)", "error / tolerance", "verdict")
     for column in table.columns[2:6]:
         column.justify = "right"
     for entry in entries:
         numbers = (str(entry.joints), str(entry.links), _in_eps(entry.eps), _ratio(entry.of_tolerance))
-        table.add_row(Text(entry.name), entry.base, *(numbers if entry.links else [""] * 4), Text(*LOOK[entry.verdict]))
+        table.add_row(Text(entry.name), entry.base, *(numbers if entry.links else [""] * 4), LOOK[entry.verdict])
     console.print(table)
     console.print(Text("relative: worst normwise error over all links", "dim"))
-    for name, defect in dict.fromkeys((entry.name, entry.defect) for entry in entries if entry.defect):
-        console.print(Text(f"{name}: {defect}"), soft_wrap=True)
-    for entry in entries:
-        if entry.verdict == "disagree" and entry.worst:
-            console.print(Text(f"{entry.name}, {entry.base} base: worst {entry.worst}"), soft_wrap=True)
+    defects = dict.fromkeys(f"{entry.name}: {entry.defect}" for entry in entries if entry.defect)
+    worst = (entry for entry in entries if entry.verdict == "disagree" and entry.worst)
+    for line in (*defects, *(f"{entry.name}, {entry.base} base: worst {entry.worst}" for entry in worst)):
+        console.print(Text(line), soft_wrap=True)
     counts = Counter[str](entry.verdict for entry in entries)
     console.print(
         Text(
