@@ -11,22 +11,34 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from rttrr_pin.auditing import audit, read_publication
-    from rttrr_pin.compile import Kernel
-    from rttrr_pin.core.joint import Joint, JointEffects, Limits, Mimic
-    from rttrr_pin.core.model import Link, Model
-    from rttrr_pin.core.payload import RandomPayload
-    from rttrr_pin.core.wrench import LinkWrenches, Wrench
-    from rttrr_pin.derivation import derive
-    from rttrr_pin.errors import InputError, RttrrError
-    from rttrr_pin.exact import Enclosures
-    from rttrr_pin.implementations import Batch, Evaluation, Implementation
-    from rttrr_pin.inspection import inspect
-    from rttrr_pin.laws import check_laws
-    from rttrr_pin.loading import load, load_all
-    from rttrr_pin.robot import Robot
-    from rttrr_pin.validation import compare_state, validate, validate_many
-    from rttrr_pin.validation.search import search_worst_state
+    from rttrr_pin.auditing import audit as audit
+    from rttrr_pin.auditing import read_publication as read_publication
+    from rttrr_pin.compile import Kernel as Kernel
+    from rttrr_pin.core.joint import Joint as Joint
+    from rttrr_pin.core.joint import JointEffects as JointEffects
+    from rttrr_pin.core.joint import Limits as Limits
+    from rttrr_pin.core.joint import Mimic as Mimic
+    from rttrr_pin.core.model import Link as Link
+    from rttrr_pin.core.model import Model as Model
+    from rttrr_pin.core.payload import RandomPayload as RandomPayload
+    from rttrr_pin.core.wrench import LinkWrenches as LinkWrenches
+    from rttrr_pin.core.wrench import Wrench as Wrench
+    from rttrr_pin.derivation import derive as derive
+    from rttrr_pin.errors import InputError as InputError
+    from rttrr_pin.errors import RttrrError as RttrrError
+    from rttrr_pin.exact import Enclosures as Enclosures
+    from rttrr_pin.implementations import Batch as Batch
+    from rttrr_pin.implementations import Evaluation as Evaluation
+    from rttrr_pin.implementations import Implementation as Implementation
+    from rttrr_pin.inspection import inspect as inspect
+    from rttrr_pin.laws import check_laws as check_laws
+    from rttrr_pin.loading import load as load
+    from rttrr_pin.loading import load_all as load_all
+    from rttrr_pin.robot import Robot as Robot
+    from rttrr_pin.validation import compare_state as compare_state
+    from rttrr_pin.validation import validate as validate
+    from rttrr_pin.validation import validate_many as validate_many
+    from rttrr_pin.validation.search import search_worst_state as search_worst_state
 
 __version__ = "0.1.0"
 
@@ -52,37 +64,7 @@ _PLACES = {
 
 _MODULES = {name: module for module, names in _PLACES.items() for name in names}
 
-__all__ = [
-    "Batch",
-    "Enclosures",
-    "Evaluation",
-    "Implementation",
-    "InputError",
-    "Joint",
-    "JointEffects",
-    "Kernel",
-    "Limits",
-    "Link",
-    "LinkWrenches",
-    "Mimic",
-    "Model",
-    "RandomPayload",
-    "Robot",
-    "RttrrError",
-    "Wrench",
-    "__version__",
-    "audit",
-    "check_laws",
-    "compare_state",
-    "derive",
-    "inspect",
-    "load",
-    "load_all",
-    "read_publication",
-    "search_worst_state",
-    "validate",
-    "validate_many",
-]
+__all__ = sorted(["__version__", *_MODULES])
 
 
 def __getattr__(name: str) -> Any:

@@ -16,6 +16,7 @@ from rttrr_pin.implementations import Batch
 from rttrr_pin.implementations.pinocchio import Pinocchio
 from rttrr_pin.validation import Validation, compare_state, validate
 from support.implementations import altered
+from support.serial_chains import random_chain
 from support.tolerances import EPS, ROUNDING
 
 
@@ -199,6 +200,12 @@ def test_numbers_that_no_norm_can_hold_are_no_verdict(gravity: tuple[float, ...]
 def test_a_robot_without_joints_is_no_agreement() -> None:
     with pytest.raises(InputError, match="nothing to compare"):
         validate(rttrr_pin.load('<robot name="x"><link name="a"/></robot>'), n_states=5)
+
+
+def test_torques_of_a_robot_that_cannot_move_are_no_agreement() -> None:
+    robot = rttrr_pin.load(random_chain(6, ("fixed", "fixed")))
+    with pytest.raises(InputError, match="lagrange gives tau: there is nothing to compare, since no joint moves"):
+        validate(robot, reference="lagrange", n_states=5)
 
 
 @pytest.mark.parametrize(

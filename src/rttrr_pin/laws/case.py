@@ -86,16 +86,9 @@ class Case:
         gravity: Vector | None = None,
     ) -> Result:
         """The results of the reference recursion, with some of its inputs replaced."""
-        return dynamics(
-            self.model,
-            self.arithmetic,
-            self.q,
-            self.v if v is None else v,
-            self.a if a is None else a,
-            self.payloads if payloads is None else payloads,
-            self.links if links is None else links,
-            self.gravity if gravity is None else gravity,
-        )
+        v, a = self.v if v is None else v, self.a if a is None else a
+        payloads = self.payloads if payloads is None else payloads
+        return dynamics(self.model, self.arithmetic, self.q, v, a, payloads, links, gravity)
 
     @cached_property
     def duals(self) -> Arithmetic:

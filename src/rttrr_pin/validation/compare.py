@@ -60,8 +60,8 @@ class Ranking:
         """Take in the largest error / tolerance of each of consecutive states."""
         beyond = np.flatnonzero(ratios > 1.0)
         self.failing += len(beyond)
-        seen = self.worst + [(float(ratios[k]), first + int(k)) for k in beyond]
-        self.worst = sorted(seen, key=lambda pair: (-pair[0], pair[1]))[:ADJUDICATED]
+        states = self.worst + [(float(ratios[k]), first + int(k)) for k in beyond]
+        self.worst = sorted(states, key=lambda pair: (-pair[0], pair[1]))[:ADJUDICATED]
         if len(beyond) < len(ratios):
             k = int(np.argmax(np.where(ratios > 1.0, -1.0, ratios)))
             self.passing.see(ratios[k : k + 1], first + k)
@@ -153,7 +153,7 @@ class Comparison:
             np.maximum(ratios, of_tolerance, out=ratios)
         for quantity, worst in self.whole.items():
             x, y = (side.values[quantity].reshape(len(batch), -1) for side in (subject, reference))
-            worst.see(ratio(_or(norm(x - y), np.inf), EPS * norm(y)), first)
+            worst.see(ratio(_finite_or(norm(x - y), np.inf), EPS * norm(y)), first)
         return ratios
 
     def differences(self, batch: Batch, subject: Evaluation, reference: Evaluation) -> Iterator[Difference]:
@@ -163,7 +163,8 @@ class Comparison:
             x, y = subject.values[key], reference.values[key]
             errors = np.abs(x - y) if key == "tau" else norm(x - y)
             lengths = self._sizes_of_tau(batch, subject, reference) if key == "tau" else norm(y)
-            errors, lengths = _or(errors, np.inf), _or(lengths, 0.0)  # as far off as can be
+            # A result that is not finite is as far off as can be: an infinite error, of a size that excuses nothing.
+            errors, lengths = _finite_or(errors, np.inf), _finite_or(lengths, 0.0)
             for columns in zip(errors.T, lengths.T, (allowance[key] + other[key]).T, strict=True):
                 yield Difference(*columns)
 
@@ -172,8 +173,7 @@ class Comparison:
         sides = [side for side in (reference, subject) if "f" in side.values and "n" in side.values]
         vectors = sides[0].values if sides else dict(batch.recursion[0].items())
         joints = [side.tau_joint for side in (reference, subject) if side.tau_joint is not None]
-        own = np.abs(joints[0] if joints else batch.recursion[0].tau_joint)
-        sizes = own.copy()
+        sizes: Array = np.abs(joints[0] if joints else batch.recursion[0].tau_joint)
         for column, parts in enumerate(self._carriers):
             sizes[:, column] += sum(weight * norm(vectors[key][:, link]) for weight, key, link in parts)
         return sizes
@@ -182,10 +182,10 @@ class Comparison:
 def _allowance(batch: Batch, evaluation: Evaluation) -> Mapping[str, Array]:
     """What rounding may make of a result; what is not finite excuses nothing."""
     known = default_allowance(batch) if evaluation.allowance is None else evaluation.allowance
-    return {key: _or(x, 0.0) for key, x in known.items()}
+    return {key: _finite_or(x, 0.0) for key, x in known.items()}
 
 
-def _or(values: Array, otherwise: float) -> Array:
+def _finite_or(values: Array, otherwise: float) -> Array:
     """The values, and something else for what is not finite."""
     return np.where(np.isfinite(values), values, otherwise)
 

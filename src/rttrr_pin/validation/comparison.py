@@ -63,13 +63,13 @@ class Run:
         programs = (judged, *references)
         comparisons = []
         for other in references:
-            common = [key for key in judged.quantities if key in other.quantities]
-            if not common:
+            comparisons.append(Comparison(model, [key for key in judged.quantities if key in other.quantities]))
+            if not comparisons[-1].rows:
                 raise InputError(
                     f"{judged.name} gives {', '.join(judged.quantities)}, and {other.name} gives "
                     f"{', '.join(other.quantities)}: there is nothing to compare"
+                    f"{'' if model.nv else ', since no joint moves'}"
                 )
-            comparisons.append(Comparison(model, common))
         states = States(sampler, programs, compiled=any(program.name == "kernel" for program in programs))
         return cls(states, programs, tuple(comparisons))
 

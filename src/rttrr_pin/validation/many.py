@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict, dataclass
 from multiprocessing import get_context
@@ -18,7 +18,7 @@ from rttrr_pin.implementations import names
 from rttrr_pin.loading import load
 from rttrr_pin.validation.run import validate
 from rttrr_pin.validation.sampling import SAMPLINGS
-from rttrr_pin.validation.states import check_count
+from rttrr_pin.validation.states import Progress, check_count
 
 Base = Literal["fixed", "floating"]
 
@@ -79,7 +79,7 @@ def validate_many(
     sources: Mapping[str, Path],
     task: Task,
     workers: int | None = None,
-    progress: Callable[[int], None] | None = None,
+    progress: Progress | None = None,
 ) -> list[Entry]:
     """Validate each robot, on a fixed and on a floating base.
 
@@ -141,9 +141,9 @@ def _entry(name: str, path: Path, base: Base, task: Task) -> Entry:
         "agree" if result.passed else "disagree",
         joints=robot.model.nv,
         links=len(robot.link_names),
-        eps=max(seen.value for seen in result.whole.values()),
-        of_tolerance=worst.of_tolerance.value if worst else 0.0,
-        worst=f"{worst.quantity} at {worst.at}, state {worst.of_tolerance.state}" if worst else "",
+        eps=max(largest.value for largest in result.whole.values()),
+        of_tolerance=worst.of_tolerance.value,
+        worst=f"{worst.quantity} at {worst.at}, state {worst.of_tolerance.state}",
         seconds=time.perf_counter() - start,
     )
 

@@ -47,8 +47,8 @@ def show_validation(result: Validation, console: Console, rerun: str = "", full:
         console.print(Text(line, "dim"), soft_wrap=True)
     _show_verdict(result, console)
     _show_adjudications(result, console)
-    worst = result.worst
-    if worst is not None and rerun:
+    if rerun:
+        worst = result.worst
         at = f"worst state {worst.of_tolerance.state} ({worst.quantity} at {worst.at}{_reference_of(result, worst)})"
         console.print(Text(f"{at}, in full: {rerun} {worst.of_tolerance.state}"), soft_wrap=True)
 

@@ -16,7 +16,7 @@ from rttrr_pin.exact import Adjudication
 from rttrr_pin.implementations import Implementation, label
 from rttrr_pin.implementations.registry import Source
 from rttrr_pin.robot import Robot
-from rttrr_pin.validation.compare import Comparison, Row, Worst
+from rttrr_pin.validation.compare import Row, Worst
 from rttrr_pin.validation.comparison import References, Run
 from rttrr_pin.validation.sampling import Payload
 from rttrr_pin.validation.states import Progress, check_count, described
@@ -40,15 +40,10 @@ class ReferenceSummary:
     rows: tuple[Row, ...]
     whole: dict[str, Worst]
 
-    @classmethod
-    def of(cls, reference: Implementation, comparison: Comparison) -> ReferenceSummary:
-        """What a comparison has gathered."""
-        return cls(reference.name, reference.version, tuple(comparison.rows), comparison.whole)
-
     @property
     def passed(self) -> bool:
-        """Whether there was something to compare, and every state of every row lies within the tolerance."""
-        return bool(self.rows) and all(row.passed for row in self.rows)
+        """Whether every state of every row lies within the tolerance."""
+        return all(row.passed for row in self.rows)
 
     @property
     def worst(self) -> Row:
@@ -61,7 +56,7 @@ class ReferenceSummary:
         for row in self.rows:
             quantities.setdefault(row.quantity, {})[row.at] = asdict(row) | {"passed": row.passed}
         worst = {key: getattr(self.worst, key) for key in ("quantity", "at")} | asdict(self.worst.of_tolerance)
-        normwise = {quantity: asdict(seen) for quantity, seen in self.whole.items()}
+        normwise = {quantity: asdict(largest) for quantity, largest in self.whole.items()}
         names = {"reference": f"{self.name} {self.version}".rstrip(), "passed": self.passed}
         return {**names, "worst": worst, "normwise_eps": normwise, "quantities": quantities}
 
@@ -130,17 +125,17 @@ class Validation:
         return all(other.passed for other in self.references)
 
     @property
-    def worst(self) -> Row | None:
-        """The row that comes closest to its tolerance, or lies furthest beyond; None for a robot without joints."""
-        return max(self.rows, key=lambda row: row.of_tolerance.value, default=None)
+    def worst(self) -> Row:
+        """The row that comes closest to its tolerance, or lies furthest beyond."""
+        return max(self.rows, key=lambda row: row.of_tolerance.value)
 
     def summary(self) -> str:
         """The verdict in one sentence."""
         compared = f"{self.subject} against {self.reference} on {self.n_states:,} states of {self.robot}"
         if self.passed:
             return f"PASS {compared}: all within rounding"
-        bad = [row for row in self.rows if not row.passed]
-        return f"FAIL {compared}: {self.failing:,} states beyond rounding, first {bad[0].quantity} at {bad[0].at}"
+        first = next(row for row in self.rows if not row.passed)
+        return f"FAIL {compared}: {self.failing:,} states beyond rounding, first {first.quantity} at {first.at}"
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as data for JSON."""
@@ -224,7 +219,10 @@ def validate(
         gravity=tuple(robot.model.gravity.tolist()),
         effects={joint.name: joint.effects for joint in robot.model.joints if joint.effects != JointEffects()},
         subject=label(run.subject),
-        references=tuple(map(ReferenceSummary.of, run.references, run.comparisons)),
+        references=tuple(
+            ReferenceSummary(reference.name, reference.version, tuple(comparison.rows), comparison.whole)
+            for reference, comparison in zip(run.references, run.comparisons, strict=True)
+        ),
         n_states=run.states.count(n_states),
         sampling=run.states.sampling,
         seed=seed,

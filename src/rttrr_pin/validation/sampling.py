@@ -30,13 +30,10 @@ Payload = Wrench | RandomPayload | None
 PER_COUNTER = 4
 """Doubles that one value of Philox's counter yields."""
 
-DEFAULT_RANGE = {"rad": math.pi, "m": 1.0}
-"""Half range of a coordinate whose limits the file leaves open, or sets to 0 and 0."""
+DEFAULT = {"rad": math.pi, "m": 1.0}
+"""Half range of a coordinate, and largest rate per second, where the file leaves them open or sets them to 0."""
 
-DEFAULT_RATE = {"rad": math.pi, "m": 1.0}
-"""Largest rate, per second, where the file sets none, or 0."""
-
-DEFAULT_ACCELERATION = {"rad": 10.0, "m": 10.0}
+ACCELERATION = 10.0
 """Largest acceleration, per second squared; URDF has no limit for it."""
 
 LARGE_VELOCITY = 100.0
@@ -56,18 +53,16 @@ class Ranges:
     lower: Array
     upper: Array
     rate: Array
-    acceleration: Array
     angle: NDArray[np.bool_]
 
     @classmethod
     def of(cls, model: Model) -> Ranges:
         """The limits of the file, and finite defaults where it has none."""
         freedoms = [(joint, "rad" if rotates else "m") for joint in model.moving for rotates in joint.type.rotations]
-        lower, upper = np.array([_range(joint, unit) for joint, unit in freedoms]).reshape(-1, 2).T
-        rate = [_finite_or(joint.limits.velocity, DEFAULT_RATE[unit]) for joint, unit in freedoms]
-        acceleration = [DEFAULT_ACCELERATION[unit] for _, unit in freedoms]
-        angle = np.array([unit == "rad" for _, unit in freedoms], dtype=bool)
-        return cls(lower, upper, np.array(rate), np.array(acceleration), angle)
+        lower, upper = np.array([_range(joint, DEFAULT[unit]) for joint, unit in freedoms]).reshape(-1, 2).T
+        limits = [(joint.limits.velocity, DEFAULT[unit]) for joint, unit in freedoms]
+        rate = [limit if math.isfinite(limit) and limit > 0.0 else default for limit, default in limits]
+        return cls(lower, upper, np.array(rate), np.array([unit == "rad" for _, unit in freedoms], dtype=bool))
 
 
 Triple = tuple[Array, Array, Array]
@@ -78,7 +73,7 @@ def _uniform(unit: Array, k: Indices, ranges: Ranges) -> Triple:
     """Every coordinate, rate and acceleration uniform within its range."""
     q, v, a = np.split(unit, 3, axis=1)
     at = ranges.lower + q * (ranges.upper - ranges.lower)
-    return at, (2 * v - 1) * ranges.rate, (2 * a - 1) * ranges.acceleration
+    return at, (2 * v - 1) * ranges.rate, (2 * a - 1) * ACCELERATION
 
 
 def _corners(unit: Array, k: Indices, ranges: Ranges) -> Triple:
@@ -88,7 +83,7 @@ def _corners(unit: Array, k: Indices, ranges: Ranges) -> Triple:
     right = np.where(ranges.angle, math.pi / 2, 0.0)
     places = np.clip(np.stack([ranges.lower, ranges.upper, zero, right, -right]), ranges.lower, ranges.upper)
     at = places[(q * len(places)).astype(int), np.arange(len(zero))]
-    return at, (np.floor(3 * v) - 1) * ranges.rate, (np.floor(3 * a) - 1) * ranges.acceleration
+    return at, (np.floor(3 * v) - 1) * ranges.rate, (np.floor(3 * a) - 1) * ACCELERATION
 
 
 def _zeros(unit: Array, k: Indices, ranges: Ranges) -> Triple:
@@ -140,13 +135,7 @@ class Sampler:
     """
 
     def __init__(self, model: Model, sampling: str = "uniform", seed: int = 0, payload: Payload | Load = None) -> None:
-        """Prepare to draw.
-
-        Args:
-            model: the robot.
-            sampling: one of `SAMPLINGS`.
-            seed: from 0 to 2^128 - 1.
-            payload: the same in every state; or a random one at its link, in the link's axes.
+        """Prepare to draw; a random payload acts at its link, in the link's axes.
 
         Raises:
             UnknownNameError: there is no such sampling or link.
@@ -205,16 +194,11 @@ class Sampler:
         return (Load(self._link, unit[:, :3] * self.payload.force, unit[:, 3:] * self.payload.moment),)
 
 
-def _range(joint: Joint, unit: str) -> tuple[float, float]:
-    """A finite range of coordinates."""
+def _range(joint: Joint, half: float) -> tuple[float, float]:
+    """A finite range of coordinates; half of it where the file leaves an end open."""
     lower, upper = joint.limits.lower, joint.limits.upper
-    half = DEFAULT_RANGE[unit]
     if lower == upper == 0.0 or (math.isinf(lower) and math.isinf(upper)) or joint.nv > 1:
         return -half, half
     if math.isinf(lower):
         return upper - 2 * half, upper
     return lower, lower + 2 * half if math.isinf(upper) else upper
-
-
-def _finite_or(limit: float, default: float) -> float:
-    return limit if math.isfinite(limit) and limit > 0.0 else default

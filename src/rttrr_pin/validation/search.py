@@ -87,17 +87,9 @@ def search_worst_state(
 ) -> WorstCase:
     """Look for the state at which a subject and its references differ most, as error / tolerance.
 
-    Args:
-        robot: the robot.
-        subject: as in `validate`.
-        reference: as in `validate`; of several, the largest error / tolerance against any of them counts.
-        evaluations: about how many states to look at, at least 512.
-        seed: of the search.
-        payload: as in `validate`; a random one is varied too.
-        progress: called with the number of states done.
-
-    Returns:
-        The worst state within the ranges of `validate`'s uniform states, and the row that it is worst in.
+    It looks at about `evaluations` states, at least 512, within the ranges of `validate`'s uniform states; a random
+    payload is varied too. Of several references the largest error / tolerance against any of them counts. All else is
+    as in `validate`.
 
     Raises:
         InputError: an argument cannot be used.
@@ -118,6 +110,7 @@ def search_worst_state(
         return np.array([one.of_tolerance for of_reference in differences for one in of_reference])
 
     def closeness(columns: Array) -> Array:
+        """What is minimised: minus the largest error / tolerance of each state."""
         nonlocal done
         unit = np.atleast_2d(columns.T)
         worst: Array = ratios(sampler.made_of(unit)).max(axis=0)
@@ -131,9 +124,9 @@ def search_worst_state(
         [(0.0, 1.0)] * sampler.numbers,
         init=start,
         maxiter=evaluations // POPULATION - 1,
-        tol=0.0,
+        tol=0.0,  # with atol: no stop before the last generation, since equal ratios are no convergence
         atol=0.0,
-        polish=False,
+        polish=False,  # rounding errors have no gradient
         vectorized=True,
         updating="deferred",
         rng=rng,

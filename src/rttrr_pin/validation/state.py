@@ -134,14 +134,7 @@ def compare_state(
 ) -> StateReport:
     """One of the states that `validate` compares for the same subject, references, seed, sampling and payload.
 
-    Args:
-        robot: the robot.
-        index: which state; of a table its row, counted from 0.
-        subject: as in `validate`.
-        reference: as in `validate`.
-        seed: of the generator.
-        sampling: how states are drawn.
-        payload: as in `validate`.
+    `index` says which of them; of a table it is the row, counted from 0. All else is as in `validate`.
 
     Raises:
         InputError: an argument cannot be used.
