@@ -200,10 +200,8 @@ class Robot:
         Returns:
             d tau / dq, d tau / dv, d tau / da, each (..., nv, nv), row i of tau_i.
         """
-        names = ("dtau_dq", "dtau_dv", "dtau_da")
-        parts = self._kernel(names)(q, v, a, payload)
-        dq, dv, da = (parts[name] for name in names)
-        return dq, dv, da
+        parts = self._kernel(("dtau_dq", "dtau_dv", "dtau_da"))(q, v, a, payload)
+        return parts["dtau_dq"], parts["dtau_dv"], parts["dtau_da"]
 
     def with_joint_effects(self, effects: Mapping[str, JointEffects]) -> Robot:
         """The same robot, whose joints take torque themselves.

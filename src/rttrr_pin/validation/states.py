@@ -89,24 +89,12 @@ def described(payload: Payload) -> str:
 
 
 def check_count(n_states: int) -> None:
-    """The number of states of a run is one.
-
-    Raises:
-        InputError: it is none.
-    """
+    """A run has at least one state: none would prove nothing."""
     whole_number("n_states", n_states, 1, LAST_STATE, "10^15, since none would prove nothing")
 
 
 def model_of(robot: Robot, otherwise: str) -> Model:
-    """The model of what is a robot, and has a joint.
-
-    Args:
-        robot: the robot.
-        otherwise: what follows from having no joint.
-
-    Raises:
-        InputError: it is none, or has none.
-    """
+    """The model of what is a robot and has a joint; `otherwise` says what follows from having none."""
     if not isinstance(robot, Robot):
         raise InputError(f"robot is a {type(robot).__name__}: pass a Robot, such as rttrr_pin.load({robot!r})")
     if not robot.model.links:
