@@ -91,6 +91,7 @@ def forward(case: Case) -> Iterator[Scalar]:
     if not (np.isfinite(M).all() and np.isfinite(r).all()):
         yield Bounded(np.full(rows, np.nan), 0.0)
         return
+    # Where M may be singular the law says nothing; the identity in its place lets the rest of the batch be inverted.
     regular = _smallest_eigenvalue(M) > _eigenvalue_error(M, E)
     M = np.where(regular[:, None, None], M, np.eye(n))
     inverse = np.asarray(np.linalg.inv(M), dtype=np.float64)

@@ -127,6 +127,7 @@ def adjudicate(batch: Batch, results: Sequence[tuple[str, Evaluation]]) -> Adjud
 
 def _assessment(batch: Batch, enclosures: Enclosures, name: str, evaluation: Evaluation) -> Assessment:
     """How far one program is off the true values of one state, quantity by quantity, in the order of the recursion."""
+    # The true value in an enclosure that is nearest to the program's: what it is off by is certain, and no more is.
     true = nearest(enclosures, evaluation.values)
     truth = Evaluation(true, {key: np.zeros(x.shape[:2]) for key, x in true.items()}, evaluation.tau_joint)
     comparison = Comparison(batch.model, tuple(true))

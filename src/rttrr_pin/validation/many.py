@@ -111,6 +111,7 @@ def validate_many(
 
 def _run(jobs: Sequence[tuple[str, Path, Base, Task]], workers: int) -> Iterator[tuple[int, Entry]]:
     """Outcomes as they come; an interrupt ends the workers."""
+    # A forked worker would inherit the locks of threads that are not there; a spawned one starts afresh.
     pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"))
     try:
         futures = {pool.submit(_entry, *job): number for number, job in enumerate(jobs)}

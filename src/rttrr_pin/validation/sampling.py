@@ -161,7 +161,7 @@ class Sampler:
     def draw(self, first: int, count: int) -> Batch:
         """The states first, first + 1, ..., first + count - 1."""
         whole_number("state", first, 0, LAST_STATE, "10^15")
-        counters = -(-self.numbers // PER_COUNTER)
+        counters = -(-self.numbers // PER_COUNTER)  # whole ones for each state, so that state k begins at one
         generator = np.random.Generator(np.random.Philox(key=self.seed, counter=first * counters))
         return self.made_of(generator.random((count, counters * PER_COUNTER)), first)
 
