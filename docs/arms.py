@@ -13,7 +13,7 @@ from types import MappingProxyType
 
 from rttrr_pin.core.solids import Part, Triple
 from rttrr_pin.errors import InputError
-from rttrr_pin.modular_arm.build import Arm, build_arm, build_urdf, computed, given
+from rttrr_pin.modular_arm.build import Arm, build_arm, build_urdf, decimals, significant
 from rttrr_pin.modular_arm.modules import BASE, BASE_EXIT, CODES, MATERIALS, MODULES, TOOL, TOOL_ENTRY, Module
 
 PAPER: Mapping[tuple[str, str], str] = MappingProxyType(
@@ -71,7 +71,7 @@ def readme_tables() -> str:
         )
         sections.append(
             f"## {code}: inertias\n\nComputed from the solids. The moving mass is "
-            f"{computed([sum(body.mass for body in arm.bodies)])} kg.\n\n"
+            f"{significant([sum(body.mass for body in arm.bodies)])} kg.\n\n"
             + _table(("link", "quantity", "value", "unit"), _inertia_rows(arm))
         )
     return "\n\n".join(sections)
@@ -117,7 +117,7 @@ def _table(head: Row, rows: Iterable[Row]) -> str:
 
 
 def _nonzero(prefix: str, letters: Iterable[str], values: Triple, unit: str) -> Iterator[Row]:
-    return ((prefix + letter, given([value]), unit) for letter, value in zip(letters, values, strict=True) if value)
+    return ((prefix + letter, decimals([value]), unit) for letter, value in zip(letters, values, strict=True) if value)
 
 
 def _units(module: Module) -> tuple[str, str, str]:
@@ -126,20 +126,20 @@ def _units(module: Module) -> tuple[str, str, str]:
 
 
 def _material_rows() -> Iterator[Row]:
-    return ((material.name, given([material.density]), material.note) for material in MATERIALS)
+    return ((material.name, decimals([material.density]), material.note) for material in MATERIALS)
 
 
 def _module_rows() -> Iterator[Row]:
     yield from (("base", *row, "height of the base") for row in _nonzero("exit ", "xyz", BASE_EXIT, "m"))
     for module in MODULES.values():
         coordinate, rate, effort = _units(module)
-        yield (module.key, "axis", given(module.axis), "", "the rule for codes")
+        yield (module.key, "axis", decimals(module.axis), "", "the rule for codes")
         for row in (*_nonzero("entry ", "xyz", module.entry, "m"), *_nonzero("exit ", "xyz", module.exit, "m")):
             yield (module.key, *row, "size of the solids")
-        yield (module.key, "lower", given([module.lower]), coordinate, module.range_note)
-        yield (module.key, "upper", given([module.upper]), coordinate, module.range_note)
-        yield (module.key, "velocity", given([module.velocity]), rate, "usual for a drive of this size")
-        yield (module.key, "effort", given([module.effort]), effort, module.effort_note)
+        yield (module.key, "lower", decimals([module.lower]), coordinate, module.range_note)
+        yield (module.key, "upper", decimals([module.upper]), coordinate, module.range_note)
+        yield (module.key, "velocity", decimals([module.velocity]), rate, "usual for a drive of this size")
+        yield (module.key, "effort", decimals([module.effort]), effort, module.effort_note)
     yield from (("tool", *row, "length of the gripper") for row in _nonzero("entry ", "xyz", TOOL_ENTRY, "m"))
 
 
@@ -155,12 +155,12 @@ def _solid_rows() -> Iterator[Row]:
 
 
 def _part_rows(part: Part) -> Iterator[Row]:
-    mass = computed([part.body().mass])
+    mass = significant([part.body().mass])
     for name, value in vars(part.solid).items():
         if isinstance(value, tuple):
             yield from ((*row, mass) for row in _nonzero(f"{name} ", "xyz", value, "m"))
         else:
-            yield (name, given([value]), "m", mass)
+            yield (name, decimals([value]), "m", mass)
     yield from ((*row, mass) for row in _nonzero("centre ", "xyz", part.xyz, "m"))
     yield from ((*row, mass) for row in _nonzero("", ("roll", "pitch", "yaw"), part.rpy, "rad"))
 
@@ -174,23 +174,23 @@ def _joint_rows(arm: Arm) -> Iterator[Row]:
         ours = f"ours: exit of {below} + entry of {above}"
         for letter, value in zip("xyz", origin, strict=True):
             paper = PAPER.get((joint, letter), "") if arm.code == "RTTRR" else ""
-            yield (joint, f"origin {letter}", given([value]), "m", f"{paper}; value {ours}" if paper else ours)
+            yield (joint, f"origin {letter}", decimals([value]), "m", f"{paper}; value {ours}" if paper else ours)
         parallel = "(9)-(15): frames parallel at q = 0" if arm.code == "RTTRR" else "ours: frames parallel at q = 0"
         yield (joint, "origin roll, pitch, yaw", "0 0 0", "rad", parallel)
         if module:
             paper = PAPER.get((joint, "axis"), "") if arm.code == "RTTRR" else ""
-            yield (joint, f"axis ({module.type})", given(module.axis), "", paper or "ours: the rule for codes")
+            yield (joint, f"axis ({module.type})", decimals(module.axis), "", paper or "ours: the rule for codes")
             coordinate, rate, effort = _units(module)
             for key, unit in (("lower", coordinate), ("upper", coordinate), ("velocity", rate), ("effort", effort)):
-                yield (joint, key, given([getattr(module, key)]), unit, f"ours: module {module.key}")
+                yield (joint, key, decimals([getattr(module, key)]), unit, f"ours: module {module.key}")
 
 
 def _inertia_rows(arm: Arm) -> Iterator[Row]:
     for name, body in zip(arm.link_names[1:-1], arm.bodies, strict=True):
-        yield (name, "mass", computed([body.mass]), "kg")
-        yield from ((name, f"com {'xyz'[i]}", computed([body.com[i]]), "m") for i in range(3))
+        yield (name, "mass", significant([body.mass]), "kg")
+        yield from ((name, f"com {'xyz'[i]}", significant([body.com[i]]), "m") for i in range(3))
         for i, j in ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)):
-            yield (name, f"i{'xyz'[i]}{'xyz'[j]}", computed([body.inertia[i, j]]), "kg m^2")
+            yield (name, f"i{'xyz'[i]}{'xyz'[j]}", significant([body.inertia[i, j]]), "kg m^2")
 
 
 if __name__ == "__main__":

@@ -54,9 +54,11 @@ def _faces(points: Array) -> Array:
     inward = normals @ inside > heights
     faces[inward] = faces[inward][:, ::-1]
     normals, heights = _planes(moved, faces)
+    # Farthest first: most points lie inside by the time they come up, and cost one product.
     for k in np.argsort(-np.linalg.norm(moved - inside, axis=1)):
         sees = normals @ moved[k] > heights
         if sees.any() and k not in start:
+            # An edge between a face that goes and one that stays is met once; one between two that go, in both senses.
             edges = {(face[i - 1], face[i]) for face in faces[sees].tolist() for i in range(3)}
             new = np.array([(i, j, k) for i, j in edges if (j, i) not in edges])
             planes = _planes(moved, new)

@@ -253,12 +253,12 @@ RULES = (
 
 def verdicts(document: UrdfDocument) -> tuple[Verdict, ...]:
     """What each parser does with a file."""
-    places = {rule: tuple(rule.places(document)) for rule in RULES}
+    names = {rule: tuple(rule.places(document)) for rule in RULES}
 
     def verdict(parser: str) -> Verdict:
-        own = [rule for rule in RULES if parser in rule.parsers and places[rule]]
+        own = [rule for rule in RULES if parser in rule.parsers and names[rule]]
         matches = (
-            RuleMatch(rule.id, rule.behaviour, name, rule.reason, rule.source) for rule in own for name in places[rule]
+            RuleMatch(rule.id, rule.behaviour, name, rule.reason, rule.source) for rule in own for name in names[rule]
         )
         return Verdict(parser, _worst(own), tuple(matches))
 

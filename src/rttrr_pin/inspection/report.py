@@ -145,11 +145,11 @@ def _findings(findings: Iterable[Finding], full: bool, width: int) -> Iterator[s
 
 def _verdict(verdict: Verdict, width: int) -> Iterator[str]:
     yield f"{verdict.parser}: {verdict.behaviour} ({MEANING[verdict.behaviour]})"
-    places: dict[tuple[Behaviour, str], list[str]] = {}
+    names_of: dict[tuple[Behaviour, str], list[str]] = {}
     for match in verdict.matches:
-        places.setdefault((match.behaviour, match.reason), []).append(match.name)
-    for behaviour, reason in sorted(places, key=lambda rule: -list(Behaviour).index(rule[0])):
-        names = places[behaviour, reason]
+        names_of.setdefault((match.behaviour, match.reason), []).append(match.name)
+    for behaviour, reason in sorted(names_of, key=lambda rule: -list(Behaviour).index(rule[0])):
+        names = names_of[behaviour, reason]
         more = f" and {len(names) - MOST_PLACES} more" if len(names) > MOST_PLACES else ""
         yield _wrapped(f"    {behaviour}: {reason}: {', '.join(names[:MOST_PLACES])}{more}", width)
 

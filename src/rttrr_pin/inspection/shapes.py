@@ -190,10 +190,10 @@ def find_mesh(filename: str, folder: Path) -> Path | None:
     """
     if filename.startswith(("package://", "model://")):
         rest = filename.split("://", 1)[1]
-        places = [up / rest for up in (folder, *folder.parents)]
+        candidates = [up / rest for up in (folder, *folder.parents)]
     else:
-        places = [folder / filename.removeprefix("file://")]
-    for path in places:
+        candidates = [folder / filename.removeprefix("file://")]
+    for path in candidates:
         try:
             if path.suffix.lower() in MESH_TYPES and path.is_file() and path.stat().st_size <= LARGEST_MESH:
                 return path

@@ -123,7 +123,7 @@ def build_urdf(code: str, name: str | None = None) -> str:
     robot = ET.Element("robot", name=name)
     for material in MATERIALS:
         element = ET.SubElement(robot, "material", name=material.name)
-        ET.SubElement(element, "color", rgba=given(material.rgba))
+        ET.SubElement(element, "color", rgba=decimals(material.rgba))
     ET.SubElement(robot, "link", name="base").extend(_shapes(arm.links[0]))
     for joint, module, origin, parts, body, (parent, child) in zip(
         arm.joint_names, arm.modules, arm.origins, arm.links[1:], arm.bodies, pairwise(arm.link_names), strict=False
@@ -139,21 +139,21 @@ def build_urdf(code: str, name: str | None = None) -> str:
     return f'<?xml version="1.0"?>\n<!--\n{header}-->\n{ET.tostring(robot, encoding="unicode")}\n'
 
 
-def given(values: Iterable[float]) -> str:
+def decimals(values: Iterable[float]) -> str:
     """Numbers of the tables and their sums, to 9 decimals (of a length: a nanometre)."""
     return " ".join(f"{round(value, 9) + 0.0:.9f}".rstrip("0").rstrip(".") for value in values)
 
 
-def computed(values: Iterable[float]) -> str:
+def significant(values: Iterable[float]) -> str:
     """Numbers computed from the tables, to 6 significant digits."""
     return " ".join(f"{value:.6g}" for value in values)
 
 
 def _inertial(body: RigidBody) -> ET.Element:
     element = ET.Element("inertial")
-    ET.SubElement(element, "origin", xyz=computed(body.com), rpy="0 0 0")
-    ET.SubElement(element, "mass", value=computed([body.mass]))
-    ET.SubElement(element, "inertia", {name: computed([body.inertia[at]]) for name, at in ENTRIES.items()})
+    ET.SubElement(element, "origin", xyz=significant(body.com), rpy="0 0 0")
+    ET.SubElement(element, "mass", value=significant([body.mass]))
+    ET.SubElement(element, "inertia", {name: significant([body.inertia[at]]) for name, at in ENTRIES.items()})
     return element
 
 
@@ -163,9 +163,9 @@ def _shapes(parts: Iterable[Part]) -> Iterator[ET.Element]:
     for tag, suffix in (("visual", ""), ("collision", "_collision")):
         for part in solids:
             element = ET.Element(tag, name=part.name + suffix)
-            ET.SubElement(element, "origin", xyz=given(part.xyz), rpy=given(part.rpy))
+            ET.SubElement(element, "origin", xyz=decimals(part.xyz), rpy=decimals(part.rpy))
             shape, sizes = type(part.solid).__name__.lower(), vars(part.solid)
-            numbers = {key: given(value if isinstance(value, tuple) else (value,)) for key, value in sizes.items()}
+            numbers = {key: decimals(value if isinstance(value, tuple) else (value,)) for key, value in sizes.items()}
             ET.SubElement(ET.SubElement(element, "geometry"), shape, numbers)
             if tag == "visual":
                 ET.SubElement(element, "material", name=part.material.name)
@@ -175,12 +175,12 @@ def _shapes(parts: Iterable[Part]) -> Iterator[ET.Element]:
 def _joint(name: str, parent: str, child: str, origin: Triple, module: Module | None = None) -> ET.Element:
     """A module's joint; without a module a fixed one."""
     element = ET.Element("joint", name=name, type="fixed" if module is None else module.type)
-    ET.SubElement(element, "origin", xyz=given(origin), rpy="0 0 0")
+    ET.SubElement(element, "origin", xyz=decimals(origin), rpy="0 0 0")
     ET.SubElement(element, "parent", link=parent)
     ET.SubElement(element, "child", link=child)
     if module is not None:
-        ET.SubElement(element, "axis", xyz=given(module.axis))
-        limits = {key: given([getattr(module, key)]) for key in ("lower", "upper", "effort", "velocity")}
+        ET.SubElement(element, "axis", xyz=decimals(module.axis))
+        limits = {key: decimals([getattr(module, key)]) for key in ("lower", "upper", "effort", "velocity")}
         ET.SubElement(element, "limit", limits)
     return element
 
@@ -215,6 +215,6 @@ _NEW = "Written by `rttrr-pin new {code}`. Every number of its modules is in urd
 
 def _header(code: str, is_bundled: bool) -> str:
     origin = _OURS_OF_RTTRR if code == "RTTRR" else _OURS_OF_THE_FAMILY if code in CODES else _OURS_ALONE
-    densities = "\n".join(f"  {material.name}: {given([material.density])}" for material in MATERIALS)
+    densities = "\n".join(f"  {material.name}: {decimals([material.density])}" for material in MATERIALS)
     written = _BUNDLED if is_bundled else _NEW.format(code=code)
     return _HEADER.format(code=code, count=len(code), origin=origin, densities=densities, written=written)

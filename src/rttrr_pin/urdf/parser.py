@@ -215,6 +215,7 @@ def _check_tree(document: UrdfDocument, robot: Element, joints: dict[str, Elemen
         raise robot.error(
             f"has {len(roots)} root links ({', '.join(roots[:6])}), expected one: join them with fixed joints"
         )
+    # From a root no loop can be entered, since each link has one parent: the walk ends, and leaves the loops out.
     reached = {name for _, name in document.walk()} if roots else set()
     if len(reached) < len(links):
         loop = ", ".join(sorted(links.keys() - reached)[:6])
