@@ -10,14 +10,13 @@ import pytest
 
 from rttrr_pin import JointEffects, Robot
 from rttrr_pin.compile.regrouping import regroup
-from rttrr_pin.core.algebra import Matrix, Scalar, Vector
+from rttrr_pin.core.algebra import Matrix, Scalar, SinCos, Vector, rotation
 from rttrr_pin.core.dual import Dual, part_of, value_of
 from rttrr_pin.core.dynamics import bodies, dynamics
 from rttrr_pin.core.joint import Joint, Mimic
 from rttrr_pin.core.joints import JOINT_TYPES, PRISMATIC, REVOLUTE, JointType
 from rttrr_pin.core.joints.base import Body, Coordinate, JointMotion, JointState
 from rttrr_pin.core.model import Link, Model
-from rttrr_pin.core.rotations import SinCos, rotation
 from rttrr_pin.core.scalars import FLOAT
 from rttrr_pin.core.tangent import TIME, over_duals, tangent
 from rttrr_pin.exact.rounding import bounded_dynamics

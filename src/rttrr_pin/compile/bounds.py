@@ -59,23 +59,14 @@ def with_bounds(
 
 @dataclass
 class _Bounder:
-    """Rebuilds a program with a bound beside each node.
-
-    Attributes:
-        program: the program.
-        quaternions: first places of quaternions among the inputs.
-        fused: whether products are fused with sums.
-        graph: the new operations.
-        values: the new node of each old one.
-        bounds: a bound on its error, in u.
-    """
+    """Rebuilds a program with a bound beside each node."""
 
     program: Program
     quaternions: tuple[int, ...]
     fused: bool
     graph: Graph = field(default_factory=Graph)
-    values: dict[int, Node] = field(default_factory=dict)
-    bounds: dict[int, Node] = field(default_factory=dict)
+    values: dict[int, Node] = field(default_factory=dict)  # by old node
+    bounds: dict[int, Node] = field(default_factory=dict)  # on their errors, in u
 
     def __post_init__(self) -> None:
         for x in self.program.order:

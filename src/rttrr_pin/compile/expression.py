@@ -128,7 +128,7 @@ class Graph:
         if self.op[x] is Op.NEG:
             return self.sub(y, self.args[x][0])
         if x == y:
-            return self.mul(self.constant(2), x)
+            return self.mul(self.constant(2), x)  # so that 2 x meets other multiples of x in one form
         return self._node(Op.ADD, (min(x, y), max(x, y)))
 
     def sub(self, x: int, y: int) -> int:
@@ -145,6 +145,7 @@ class Graph:
             return self.add(x, self.args[y][0])
         if self.op[x] is Op.NEG:
             return self.neg(self.add(self.args[x][0], y))
+        # y - x and x - y share a node: rounding is symmetric, so the sign costs no bit.
         return self._node(Op.SUB, (x, y)) if x < y else self.neg(self._node(Op.SUB, (y, x)))
 
     def mul(self, x: int, y: int) -> int:
@@ -171,7 +172,7 @@ class Graph:
             return self.neg(self._scaled(factor, self.args[y][0]))
         if exactly(factor, 1):
             return y
-        if self.op[y] is Op.MUL and self.op[self.args[y][0]] is Op.CONSTANT:
+        if self.op[y] is Op.MUL and self.op[self.args[y][0]] is Op.CONSTANT:  # numbers of the robot meet here, once
             return self._scaled(factor * self.value[self.args[y][0]], self.args[y][1])
         return self._node(Op.MUL, (self.constant(factor), y))
 

@@ -61,13 +61,7 @@ class Recorded:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class CallSite:
-    """A step, taken.
-
-    Attributes:
-        recorded: which.
-        leaves: the scalars that it is given.
-        results: the nodes that stand for its outputs.
-    """
+    """A step, taken: on which scalars, and the nodes that stand for its outputs."""
 
     recorded: Recorded
     leaves: Sequence[Leaf]
@@ -132,7 +126,7 @@ class Outliner:
         """The steps that the results need, in order; operations between them have become steps too."""
         steps: dict[int, CallSite] = {}
         needed = set(results)
-        for x in reversed(range(len(self.graph))):
+        for x in reversed(range(len(self.graph))):  # backwards: what needs a node stands behind it
             if x not in needed:
                 continue
             if x not in self.origin and self.graph.op[x] in SINGLE:

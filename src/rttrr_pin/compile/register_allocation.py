@@ -52,28 +52,19 @@ def _seen(taken: Sequence[CallSite], results: Sequence[int]) -> set[int]:
 
 @dataclass(eq=False)
 class _Columns:
-    """Gives columns to nodes.
-
-    Attributes:
-        graph: of the nodes.
-        width: columns of the inputs.
-        results: nodes of the outputs, whose columns lie behind those.
-        last: the last call that reads each node; from then on its column is free.
-        of: the column of each node.
-        free: columns that hold nothing that is still needed; the one used last is used first.
-        count: of columns so far.
-    """
+    """Gives columns to nodes: the inputs' first, the results' behind them, then those that are used again."""
 
     graph: Graph
     width: int
     results: Sequence[int]
-    last: dict[int, int]
+    last: dict[int, int]  # the last call that reads each node; from then on its column is free
     of: dict[int, int] = field(default_factory=dict)
-    free: list[int] = field(default_factory=list)
+    free: list[int] = field(default_factory=list)  # the one used last is used first
     count: int = 0
 
     def __post_init__(self) -> None:
         self.count = self.width + len(self.results)
+        # A result is computed where it is returned; of one that is returned twice, the first place is its own (`rest`).
         self.of = {x: self.width + place for place, x in reversed(list(enumerate(self.results)))}
         self.of |= {self.graph.input(place): place for place in range(self.width)}
 
@@ -82,6 +73,7 @@ class _Columns:
         read = _read(one)
         columns = tuple(self.of.get(x, 0) for x in read)  # 0 where only results that nobody needs depend on it
         self._release(x for x in dict.fromkeys(read) if self.last[x] == k)
+        # Columns read for the last time are free for this call's own results: a step reads all before it writes.
         live = one.live()
         for x in live:
             if x not in self.of:

@@ -22,35 +22,19 @@ SIGNS = {Op.ADD: (False, False), Op.SUB: (False, True), Op.NEG: (True,)}
 
 
 def order_sums(program: Program, fused: bool) -> Program:
-    """The program with its sums of sums as chains.
-
-    Args:
-        program: without fused operations.
-        fused: whether products become part of the sums that take them.
-
-    Returns:
-        A program with the same values but for rounding.
-    """
+    """The program with its sums of sums as chains, products fused into them if wanted: the same but for rounding."""
     return _Chainer(program, fused).run()
 
 
 @dataclass
 class _Chainer:
-    """Rebuilds a program, sum by sum.
-
-    Attributes:
-        program: the old program.
-        fused: whether products become part of sums.
-        graph: the new operations.
-        built: the new node of each old one; none for sums that are part of another one.
-        sizes: an estimate of each old node's size.
-    """
+    """Rebuilds a program, sum by sum."""
 
     program: Program
     fused: bool
     graph: Graph = field(default_factory=Graph)
-    built: dict[int, int] = field(default_factory=dict)
-    sizes: dict[int, float] = field(default_factory=dict)
+    built: dict[int, int] = field(default_factory=dict)  # new nodes; none for sums that are part of another one
+    sizes: dict[int, float] = field(default_factory=dict)  # estimates, of old nodes
     uses: Counter[int] = field(default_factory=Counter)
 
     def run(self) -> Program:
@@ -65,6 +49,7 @@ class _Chainer:
                 inner.update(y for y in old.graph.args[x] if self._opens(y))
         for x in old.order:
             self.sizes[x] = self._size(x)
+            # A sum inside another becomes terms of the outer one: a node of its own would fix its order.
             if x not in inner:
                 self.built[x] = self._node(x)
                 if x in old.graph.kept:
@@ -122,6 +107,7 @@ class _Chainer:
     def _chain(self, terms: list[tuple[int, bool]]) -> int:
         """The sum, term by term; a product is fused with what there is so far, or with the first number there is."""
         graph = self.graph
+        # The first term has nothing to be fused with: where it is a product, a plain number starts the chain instead.
         if self.fused and len(terms) > 1 and self._is_product(terms[0][0]) and not self._is_product(terms[1][0]):
             terms = [terms[1], terms[0], *terms[2:]]
         total, negative = terms[0] if terms else (graph.constant(0.0), False)
@@ -138,6 +124,7 @@ class _Chainer:
             else:
                 total = graph.sub(node, total) if negative else graph.sub(total, node)
                 negative = False
+            # The graph pulls signs out of sums; the chain carries its own apart, so that no term has to be negated.
             total, turned = self._bare(total)
             negative = negative != turned
         return graph.neg(total) if negative else total

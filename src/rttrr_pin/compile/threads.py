@@ -19,11 +19,6 @@ WORTH_A_THREAD = 100_000
 """Numbers in and out below which a second thread costs more than it brings."""
 
 
-def available() -> int:
-    """Processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
 def count(threads: int | None, numbers: int) -> int:
     """How many threads to use.
 
@@ -36,7 +31,8 @@ def count(threads: int | None, numbers: int) -> int:
     """
     if threads is not None:
         return whole_number("threads", threads, 1, 4096)
-    return max(1, min(available(), numbers // WORTH_A_THREAD))
+    processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    return max(1, min(processors, numbers // WORTH_A_THREAD))
 
 
 def run(task: Callable[[int, int], bool], rows: int, threads: int) -> bool:

@@ -145,13 +145,9 @@ def payload_power(payloads: Sequence[Payload], moving: Sequence[LinkState]) -> S
 def joint_effects_power(
     model: Model, arithmetic: Arithmetic, states: Sequence[JointState], rates: Sequence[JointState]
 ) -> Scalar:
-    """Power of armature, damping and friction: sum of (armature a + damping v + friction sign v) . rate [W].
+    """Power of armature, damping and friction: sum of (armature a + damping v + friction sign(v)) . rate [W].
 
-    Args:
-        model: the robot.
-        arithmetic: the kind of scalar of states.
-        states: v and a that the forces follow from, joint by joint.
-        rates: the rates that the forces work at: the same, or duals of them to obtain the force along each.
+    v and a are those of `states`; the forces work at `rates`: the same, or duals of them to get the force along each.
     """
     total: Scalar = 0
     for joint, state, at in zip(model.joints, states, rates, strict=True):
@@ -169,12 +165,7 @@ def gyroscopic(model: Model, v: Sequence[Scalar], p: Sequence[Scalar]) -> list[S
 
         force w x P,   moment w x L + v x P          (Kirchhoff)
 
-    Zero for joints whose rates are derivatives of coordinates.
-
-    Args:
-        model: the robot.
-        v: rates.
-        p: momenta that belong to them.
+    Zero for joints whose rates are derivatives of coordinates. p are the momenta that belong to the rates v.
     """
     out: list[Scalar] = []
     at = 0

@@ -14,9 +14,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from rttrr_pin.core.algebra import ZERO, Matrix, Scalar, Vector
+from rttrr_pin.core.algebra import ZERO, Matrix, Scalar, SinCos, Vector
 from rttrr_pin.core.joints.base import Body, JointMotion, JointState
-from rttrr_pin.core.rotations import SinCos
 
 Keep = Callable[[Vector], Vector]
 Call = Callable[..., Any]

@@ -13,10 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from rttrr_pin.core.algebra import Scalar
+from rttrr_pin.core.algebra import Scalar, SinCos
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.newton_euler import Call, Keep
-from rttrr_pin.core.rotations import SinCos
 
 UNIT_ROUNDOFF = 2.0**-53
 """u: the relative error of one correctly rounded float64 operation; eps is 2 u."""

@@ -22,15 +22,7 @@ def in_time(
 ) -> tuple[list[Dual], list[Dual]]:
     """Coordinates and rates as functions of time, to the first order: duals along `TIME`.
 
-    Args:
-        joints: those that move and follow no other.
-        q: coordinates [rad or m].
-        v: rates.
-        a: accelerations.
-        arithmetic: the kind of scalar of q, v and a.
-
-    Returns:
-        q with q' = what v says, and v with v' = a.
+    q' is what v says, and v' is a; `joints` are those that move and follow no other.
     """
     moved = []
     for x in tangent(joints, q, arithmetic):

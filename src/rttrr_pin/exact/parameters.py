@@ -15,11 +15,10 @@ from typing import Any, Literal
 
 import numpy as np
 
-from rttrr_pin.core.algebra import Matrix, Scalar, Vector
+from rttrr_pin.core.algebra import Matrix, Scalar, Vector, rotation
 from rttrr_pin.core.joint import Joint, JointEffects, Mimic
 from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
-from rttrr_pin.core.rotations import rotation
 from rttrr_pin.core.scalars import Arithmetic
 from rttrr_pin.errors import InputError
 from rttrr_pin.urdf.decimals import Number, NumberList

@@ -9,12 +9,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
-from rttrr_pin.core.algebra import IDENTITY, ZERO, Matrix, Scalar, Vector
+from rttrr_pin.core.algebra import IDENTITY, ZERO, Matrix, Scalar, Vector, rotation
 from rttrr_pin.core.dynamics import Result
 from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.newton_euler import Payload
-from rttrr_pin.core.rotations import rotation
 from rttrr_pin.core.wrench import LINK_QUANTITIES
 from rttrr_pin.laws.case import Case
 from rttrr_pin.laws.law import law

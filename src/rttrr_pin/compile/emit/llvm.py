@@ -42,12 +42,6 @@ CPU, CPU_FEATURES = "RTTRR_PIN_CPU", "RTTRR_PIN_CPU_FEATURES"
 """Variables of the environment that choose another processor than the one at hand, by LLVM's names."""
 
 
-@cache
-def _initialised() -> None:
-    llvm.initialize_native_target()
-    llvm.initialize_native_asmprinter()
-
-
 def _processor() -> tuple[str, str]:
     """Name and features of the processor to compile for; the environment may choose another."""
     name = os.environ.get(CPU) or llvm.get_host_cpu_name()
@@ -76,7 +70,8 @@ class LlvmEmitter:
     fuses = True
 
     def __init__(self) -> None:
-        _initialised()
+        llvm.initialize_native_target()
+        llvm.initialize_native_asmprinter()
         self.processor, self.features = _processor()
         version = ".".join(map(str, llvm.llvm_version_info))
         self.identity = (

@@ -50,11 +50,7 @@ def _constant(name: str, data: bytes) -> str:
 
 @dataclass
 class _StepCode(VectorCode):
-    """Writes the operations of one step; its columns and numbers are found through the table.
-
-    Attributes:
-        step: the step.
-    """
+    """Writes the operations of one step; its columns and numbers are found through the table."""
 
     step: Step | None = None
 

@@ -45,16 +45,7 @@ Array = tuple[ir.Value, ir.Value, ir.Value, ir.Value]
 
 
 def driver(program: Program | CallProgram, layout: Layout, between: int) -> str:
-    """The functions around the program's body, as LLVM assembly.
-
-    Args:
-        program: the program, for the widths of its arrays.
-        layout: how blocks lie in memory.
-        between: columns that its parts pass on.
-
-    Returns:
-        The text of a module that calls `body`.
-    """
+    """The functions around a program's body, as LLVM assembly; `between` columns are passed on by its parts."""
     module = ir.Module(name="driver")
     run = _Driver(module, program, layout, between).run()
     python_entry(module, program, layout, run)

@@ -59,17 +59,7 @@ Array = tuple[ir.Value, ir.Value, ir.Value]
 
 @dataclass
 class _One:
-    """Writes the function `one`.
-
-    Attributes:
-        w: writes it.
-        program: whose arrays it takes.
-        layout: how blocks lie in memory.
-        run: computes states, see `llvm_driver`.
-        api: the functions of the C API.
-        none, ndarray: the objects None and numpy.ndarray.
-        decline: where it goes if it does not take what was passed.
-    """
+    """Writes the function `one`; where it does not take what was passed, it goes to `decline`."""
 
     w: Writer
     program: Program | CallProgram

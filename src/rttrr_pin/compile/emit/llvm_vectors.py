@@ -105,14 +105,7 @@ def declarations(lanes: int) -> Iterator[str]:
 
 
 def loop(name: str, arguments: str, lines: Lines, last: str) -> str:
-    """A function that does lines for m states, LANES at a time.
-
-    Args:
-        name: of the function.
-        arguments: all but the last, m.
-        lines: what is done for the states from %i on.
-        last: the label of their last basic block.
-    """
+    """A function that does lines for m states, LANES at a time from %i on; `last` labels their last basic block."""
     text = "\n".join(lines.text)
     return f"""define internal void @{name}({arguments}, i64 %m) noinline {{
 start:
@@ -131,12 +124,9 @@ done:
 
 @dataclass
 class VectorCode:
-    """Writes operations on vectors.
+    """Writes operations of a program on vectors.
 
     Attributes:
-        program: whose operations they are.
-        layout: how the block lies in memory.
-        lines: of the function that is written.
         passed: columns of values that other parts of the program compute.
         value: the vector of each node so far.
         angles: sine and cosine of each angle so far.

@@ -11,11 +11,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
-from rttrr_pin.core.algebra import ZERO, Matrix, Scalar, Vector
+from rttrr_pin.core.algebra import ZERO, Matrix, Scalar, SinCos, Vector
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dual import Dual
 from rttrr_pin.core.inertia import SpatialInertia
-from rttrr_pin.core.rotations import SinCos
 
 Triple = tuple[float, float, float]
 

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from rttrr_pin.core.algebra import Scalar, Vector
+from rttrr_pin.core.algebra import Scalar, SinCos, Vector
 from rttrr_pin.core.inertia import NO_TENSOR, NOWHERE, SpatialInertia
 from rttrr_pin.core.joints.base import Body, JointMotion, JointState, JointType
-from rttrr_pin.core.rotations import SinCos
 
 
 class Fixed(JointType):

@@ -6,11 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from rttrr_pin.core.algebra import Scalar, Vector
+from rttrr_pin.core.algebra import Scalar, SinCos, Vector, quaternion_rotation
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dual import Dual
 from rttrr_pin.core.joints.base import Body, Coordinate, JointMotion, JointState, JointType
-from rttrr_pin.core.rotations import SinCos, quaternion_rotation
 
 PLACE = tuple(Coordinate("m", name) for name in ("x", "y", "z"))
 

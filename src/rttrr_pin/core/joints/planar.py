@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rttrr_pin.core.algebra import Scalar, Vector
+from rttrr_pin.core.algebra import Scalar, SinCos, Vector, rotation
 from rttrr_pin.core.dual import Dual
 from rttrr_pin.core.joints.base import Body, Coordinate, JointMotion, JointState, JointType
-from rttrr_pin.core.rotations import SinCos, rotation
 
 
 class Planar(JointType):

@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import ClassVar
 
-from rttrr_pin.core.algebra import IDENTITY, Matrix, Scalar, Vector
+from rttrr_pin.core.algebra import IDENTITY, Matrix, Scalar, SinCos, Vector, rotation
 from rttrr_pin.core.inertia import NOWHERE, SpatialInertia, is_zero
 from rttrr_pin.core.joints.base import Body, Coordinate, JointMotion, JointState, JointType, Limited
-from rttrr_pin.core.rotations import SinCos, rotation
 
 
 class Revolute(JointType):
