@@ -160,8 +160,8 @@ def _searched(written: dict[str, Fraction], may: dict[str, Fraction]) -> Iterato
         values, vectors = np.linalg.eigh(start + np.trace(tensor) / 2.0 * np.eye(3) - tensor)
         weights = np.exp((values[0] - values) / SOFTNESS)
         outer = (vectors * (weights / weights.sum())) @ vectors.T
-        # Of the box of all moves, the corner that raises the soft minimum fastest, by steps that become shorter.
         raised = 0.5 * np.eye(3) - outer  # what a unit of each moment adds; a product stands twice in the tensor
+        # Of the box of all moves, the corner that raises the soft minimum fastest, by steps that become shorter.
         shares += (np.sign([raised[ENTRIES[name]] for name in written]) - shares) * (2.0 / (k + 2.0))
         if k in REPORTED:
             yield {name: Fraction(float(share)) for name, share in zip(written, shares, strict=True)}
