@@ -93,6 +93,7 @@ def _dots(wrong: Counter[str], right: Counter[str], symbols: Mapping[str, Symbol
     """Dots too few or too many: what is left of a coordinate on both sides; takes it out of both counters."""
     kinds: tuple[Kind, ...] = ()
     weight = 0.0
+    # a product may have q_1 and v_1 both: all dots of one coordinate are compared at once, whatever their number
     moving = {symbols[name].index for name in wrong if symbols[name].role in DOTS}
     for index in sorted(moving):
         printed, derived = (

@@ -90,7 +90,6 @@ def _verdict(result: AuditResult, console: Console) -> None:
 
 
 def _next(result: AuditResult, console: Console, file: str) -> None:
-    """What to type to see more."""
     wrong = [component for component in result.components if component.verdict is not Verdict.MATCH]
     if not wrong:
         return
@@ -101,7 +100,6 @@ def _next(result: AuditResult, console: Console, file: str) -> None:
 
 
 def _component(result: AuditResult, component: ComponentAudit, console: Console) -> None:
-    """One component in full."""
     line = f", line {component.line}" if component.line else ""
     console.print()
     console.print(
@@ -139,7 +137,6 @@ def _finding_rows(group: Sequence[Finding], table: Table) -> None:
 
 
 def _corrected(component: ComponentAudit) -> Text:
-    """The right-hand side with its changed terms marked."""
     text = Text(f"{component.quantity} =")
     for term, changed in component.corrected:
         text.append(" ")

@@ -68,7 +68,11 @@ def layouts(text: str, components: int) -> list[tuple[list[Part], str]]:
 
 
 def _divisions(text: str, rows: Sequence[Row], matrix: bool, components: int) -> list[tuple[tuple[int, ...], str]]:
-    """The rows at which components after the first may begin, with notes."""
+    """The rows at which components after the first may begin, with notes.
+
+    Left-hand sides decide where there are any. Else a component may end where a line does not end with a sign, and it
+    certainly does where the next one does not begin with a sign either.
+    """
     breaks = range(1, len(rows))
     wanted = components - 1
     stated = [i for i in breaks if rows[i].stated]

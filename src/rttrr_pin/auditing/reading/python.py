@@ -179,7 +179,6 @@ class _Source:
         return int(power)
 
     def _angle(self, node: ast.Call) -> str:
-        """The name of a sine or cosine."""
         called = node.func.attr if isinstance(node.func, ast.Attribute) else ast.unparse(node.func)
         if called not in FUNCTIONS or len(node.args) != 1 or node.keywords:
             raise self._fault("the only functions are sin and cos of one angle; write it out", node)

@@ -98,7 +98,7 @@ def _lines(tokens: Sequence[Token]) -> list[Row]:
         elif line:
             lines.append(line)
     rows: list[Row] = []
-    stated = False
+    stated = False  # `F =` on a line of its own states the row that follows
     for row in map(_row, lines):
         stated = stated or row.stated
         if row.tokens:
@@ -108,7 +108,6 @@ def _lines(tokens: Sequence[Token]) -> list[Row]:
 
 
 def _row(line: list[Token]) -> Row:
-    """A line without its left-hand side and its stop."""
     sides = divided(line, "EQUALS")
     if len(sides) > 2:
         second = [token for token in line if token.type == "EQUALS"][1]
@@ -160,6 +159,5 @@ def _cells(tokens: Sequence[Token]) -> list[Row]:
     cells = [divided(row, "AMPERSAND") for row in rows]
     wide = next((row for row in cells if len(row) > 1), None)
     if wide is not None and len(rows) > 1:
-        place = start_of(rows[0][0])
-        raise UnreadableError("the matrix has rows and columns, wanted one column or one row", place)
+        raise UnreadableError("the matrix has rows and columns, wanted one column or one row", start_of(rows[0][0]))
     return [row for cell in (cells[0] if wide is not None else rows) if (row := _row(list(cell))).tokens]

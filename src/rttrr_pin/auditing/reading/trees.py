@@ -127,7 +127,6 @@ def _word(tree: Tree[Token]) -> Atom:
 
 
 def _scripted(factor: Factor, script: Node) -> Factor:
-    """A factor with one more superscript or subscript."""
     children = script.children if isinstance(script, Tree) else [script]
     kind = _rule(children[0])
     below = kind in ("SUB_DIGIT", "UNDERSCORE")
@@ -170,7 +169,6 @@ def spelled(node: Node) -> str:
 
 
 def _rule(node: Node) -> str:
-    """The name of a tree's rule, or of a token's type."""
     return str(node.type if isinstance(node, Token) else node.data)
 
 
