@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -21,7 +22,9 @@ def recursion(robot: Robot, q: Coordinates, v: Coordinates, a: Coordinates, payl
     batch = np.broadcast_shapes(*(x.shape[:-1] for x in states))
     rows = math.prod(batch)
     arrays = [np.broadcast_to(x, (*batch, x.shape[-1])).reshape(rows, x.shape[-1]) for x in states]
-    scalars = evaluate(robot.model, FLOAT, *arrays, loads_of(robot.model, payload)).scalars(RESULTS)
-    numbers = np.stack([np.broadcast_to(np.asarray(x, np.float64), rows) for x in scalars], axis=1)
+    scalars: list[Any] = evaluate(robot.model, FLOAT, *arrays, loads_of(robot.model, payload)).scalars(RESULTS)
+    numbers = np.empty((rows, len(scalars)))
+    for column, scalar in enumerate(scalars):
+        numbers[:, column] = scalar
     parts = {key: x.reshape(*batch, *x.shape[1:]) for key, x in split_columns(robot.model, numbers, RESULTS).items()}
     return LinkWrenches.of(parts, robot.link_names, robot.model.v_names)
