@@ -2,31 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from itertools import chain
-from typing import Any, Protocol
+from itertools import chain, product
+from typing import TYPE_CHECKING, Any
 
-from rttrr_pin.core.algebra import Scalar, Vector
 from rttrr_pin.core.model import Model
 from rttrr_pin.derivation.closed_forms import TooLongError, closed_forms
-from rttrr_pin.derivation.quantities import DEFAULT, QUANTITIES, Extent, Index, indices
+from rttrr_pin.derivation.quantities import DEFAULT, QUANTITIES, Extent, Index
 from rttrr_pin.derivation.ring import Ring
 from rttrr_pin.derivation.stepwise import Step, Stepwise, needed
 from rttrr_pin.derivation.symbolic_robot import ParameterSymbols, SymbolicRobot, default_symbols
 from rttrr_pin.derivation.symbols import Expression, Symbol
 from rttrr_pin.errors import InputError, UnknownNameError
 
+if TYPE_CHECKING:
+    from rttrr_pin.robot import Robot
+
 FORMS = ("auto", "expanded", "stepwise")
 
 MOST_TERMS = 10_000
 """In all that was asked for: more than that nobody reads, and `auto` names steps instead."""
-
-
-class HasModel(Protocol):
-    """A robot as a user holds it."""
-
-    model: Model
 
 
 @dataclass(frozen=True)
@@ -113,7 +109,7 @@ def _data(expression: Expression) -> list[dict[str, Any]]:
 
 
 def derive(
-    robot: HasModel | Model,
+    robot: Robot | Model,
     quantities: Sequence[str] = DEFAULT,
     form: str = "auto",
     parameters: ParameterSymbols | None = None,
@@ -172,11 +168,11 @@ def only_leaf(model: Model) -> int | None:
 
 def _expanded(robot: SymbolicRobot, quantities: Sequence[str], most_terms: int | None) -> Derivation:
     ring, forms = robot.ring, closed_forms(robot, most_terms)
-    entries: dict[str, Sequence[Scalar]] = {}
+    derived = {}
     for name in quantities:
         rows = getattr(forms, name)
-        entries[name] = rows if QUANTITIES[name].extent is Extent.JOINTS else [x for row in rows for x in row]
-    derived = {name: _derived(robot.model, name, map(ring.terms, scalars)) for name, scalars in entries.items()}
+        entries = rows if QUANTITIES[name].extent is Extent.JOINTS else chain.from_iterable(rows)
+        derived[name] = _derived(robot.model, name, map(ring.terms, entries))
     result = Derivation(robot, "expanded", "as asked for", (), derived)
     if most_terms is None:
         return result
@@ -187,27 +183,11 @@ def _expanded(robot: SymbolicRobot, quantities: Sequence[str], most_terms: int |
 
 def _stepwise(robot: SymbolicRobot, quantities: Sequence[str], reason: str) -> Derivation:
     runs = Stepwise(robot)
-    motion = runs.motion()
-    expressions: dict[str, Callable[[], Iterable[Expression]]] = {
-        "v_dot_C": lambda: _flat(runs, runs.accelerations()),
-        "F": lambda: _flat(runs, motion.F),
-        "N": lambda: _flat(runs, motion.N),
-        "f": lambda: _flat(runs, motion.f),
-        "n": lambda: _flat(runs, motion.n),
-        "tau": lambda: map(runs.terms, motion.tau),
-        "M": lambda: chain.from_iterable(runs.mass_matrix()),
-        "C": lambda: chain.from_iterable(runs.coriolis()),
-        "g": runs.gravity,
-    }
-    derived = {name: _derived(robot.model, name, expressions[name]()) for name in quantities}
+    derived = {name: _derived(robot.model, name, runs.quantity(name)) for name in quantities}
     results = [terms for quantity in derived.values() for terms in quantity.terms.values()]
     return Derivation(robot, "stepwise", reason, tuple(needed(runs.steps.values(), results)), derived)
 
 
 def _derived(model: Model, name: str, terms: Iterable[Expression]) -> Derived:
     shape = QUANTITIES[name].extent.shape(model)
-    return Derived(name, shape, dict(zip(indices(shape), terms, strict=True)))
-
-
-def _flat(runs: Stepwise, vectors: Iterable[Vector]) -> Iterator[Expression]:
-    return (runs.terms(component) for vector in vectors for component in vector)
+    return Derived(name, shape, dict(zip(product(*map(range, shape)), terms, strict=True)))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from xml.sax.saxutils import quoteattr
@@ -28,11 +28,7 @@ MOTIONS = (("revolute", "about"), ("prismatic", "along"))
 
 @dataclass(frozen=True, slots=True)
 class WrittenUrdf:
-    """A model as a URDF, for Pinocchio, which builds from nothing else.
-
-    Attributes:
-        text: the whole file.
-    """
+    """The text of a model as a URDF, for Pinocchio, which builds from nothing else."""
 
     text: str
 
@@ -84,10 +80,8 @@ def model_of(links: Sequence[Table], number: Number, has_gravity: bool) -> Model
         bodies.append(Link(names[i], mass, com, inertia))
         joints.append(_joint(link, i, -1 if parent == "base" else names.index(parent), number))
     gravity = np.array([number(("gravity", x)) for x in range(3)] if has_gravity else STANDARD_GRAVITY)
-    turns = [_angles(link) for link in links]
-    return Model(
-        "equations", Link("base"), tuple(bodies), tuple(joints), gravity, WrittenUrdf(_urdf(bodies, joints, turns))
-    )
+    urdf = WrittenUrdf(_urdf(bodies, joints, [_angles(link) for link in links]))
+    return Model("equations", Link("base"), tuple(bodies), tuple(joints), gravity, urdf)
 
 
 def _joint(link: Table, i: int, parent: int, number: Number) -> Joint:
@@ -98,7 +92,7 @@ def _joint(link: Table, i: int, parent: int, number: Number) -> Joint:
     return Joint(f"joint_{i + 1}", JOINT_TYPES[motion], parent, R, p, direction, rotated=any(turn))
 
 
-def _angles(link: Table) -> tuple[float, float, float]:
+def _angles(link: Table) -> tuple[float, ...]:
     """Roll, pitch and yaw of a joint's frame [rad]."""
     angles = []
     for text in link.texts("rpy_degrees", 3, ("0", "0", "0")):
@@ -106,13 +100,13 @@ def _angles(link: Table) -> tuple[float, float, float]:
             angles.append(math.radians(float(Fraction(text))))
         except (ValueError, ZeroDivisionError) as error:
             raise link.error(f"rpy_degrees has {text!r}: expected a number of degrees") from error
-    return angles[0], angles[1], angles[2]
+    return tuple(angles)
 
 
-def _urdf(links: Sequence[Link], joints: Sequence[Joint], turns: Sequence[tuple[float, float, float]]) -> str:
+def _urdf(links: Sequence[Link], joints: Sequence[Joint], turns: Sequence[Sequence[float]]) -> str:
     """The same robot as the text of a URDF."""
 
-    def row(values: Sequence[float] | np.ndarray[tuple[int, ...], np.dtype[np.float64]]) -> str:
+    def row(values: Iterable[float]) -> str:
         return " ".join(repr(float(x)) for x in values)
 
     parts = ['<robot name="equations"><link name="base"/>']

@@ -31,30 +31,23 @@ class Angle:
 
 def angles(model: Model) -> list[Angle]:
     """The angles of a robot: those among its coordinates, then those of joints that follow others."""
-    own = [Angle(str(place), place) for place in angle_places(model)]
+    own = [Angle(str(k), k) for k, dimension in enumerate(_coordinates(model), start=1) if dimension is None]
     return own + [
-        Angle(f"j{i + 1}", first_coordinate(model, mimic.joint), mimic.multiplier, mimic.offset)
+        Angle(
+            f"j{i + 1}",
+            1 + sum(model.joints[k].nq for k in model.independent if k < mimic.joint),
+            mimic.multiplier,
+            mimic.offset,
+        )
         for i, joint in enumerate(model.joints)
         if (mimic := joint.mimic) is not None and joint.type.rotates
     ]
-
-
-def angle_places(model: Model) -> Iterator[int]:
-    """The places in q, from 1, of the coordinates that are angles."""
-    for place, angle in enumerate(_coordinates(model), start=1):
-        if angle is None:
-            yield place
 
 
 def _coordinates(model: Model) -> Iterator[Dimension | None]:
     """The dimension of each coordinate; None for an angle."""
     for joint in model.moving:
         yield from (DIMENSIONS[own.unit] for own in joint.type.coordinates)
-
-
-def first_coordinate(model: Model, joint: int) -> int:
-    """The place in q, from 1, of the first coordinate of a joint."""
-    return 1 + sum(model.joints[i].nq for i in model.independent if i < joint)
 
 
 def motion_symbols(model: Model) -> Iterator[Symbol]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import enum
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from rttrr_pin.core.model import Model
@@ -40,7 +40,7 @@ class Quantity:
         payload: whether the payload enters.
         meaning: in words.
         unit: of its entries.
-        latex: what an entry is called, by its index from 0.
+        form: what an entry is called in LaTeX; i and j are its numbers, i_ the first as a script, x its axis.
     """
 
     extent: Extent
@@ -48,7 +48,12 @@ class Quantity:
     payload: bool
     meaning: str
     unit: str
-    latex: Callable[[Index], str]
+    form: str
+
+    def latex(self, at: Index) -> str:
+        """What an entry is called, by its index from 0."""
+        axis = AXES[at[1]] if self.extent is Extent.LINKS else ""
+        return self.form.format(i=at[0] + 1, i_=index(at[0] + 1), j=at[-1] + 1, x=axis)
 
     @property
     def sentence(self) -> str:
@@ -56,47 +61,27 @@ class Quantity:
         return self.meaning[0].upper() + self.meaning[1:]
 
 
-def indices(shape: tuple[int, ...]) -> Iterator[Index]:
-    """The indices of an array, the last axis fastest."""
-    if len(shape) == 1:
-        yield from ((i,) for i in range(shape[0]))
-    else:
-        yield from ((i, j) for i in range(shape[0]) for j in range(shape[1]))
-
-
-def _of_link(name: str) -> Callable[[Index], str]:
-    return lambda at: f"{{}}^{index(at[0] + 1)}{name}_{AXES[at[1]]}"
-
-
-def _of_joint(name: str) -> Callable[[Index], str]:
-    return lambda at: f"{name}_{index(at[0] + 1)}"
-
-
-def _of_pair(name: str) -> Callable[[Index], str]:
-    return lambda at: f"{name}_{{{at[0] + 1},{at[1] + 1}}}"
-
-
-def _acceleration(at: Index) -> str:
-    link = at[0] + 1
-    return rf"{{}}^{index(link)}\dot{{v}}_{{C_{{{link}{AXES[at[1]]}}}}}"
-
-
 LINKS, JOINTS, PAIRS = Extent.LINKS, Extent.JOINTS, Extent.PAIRS
 
 QUANTITIES: Mapping[str, Quantity] = {
     "v_dot_C": Quantity(
-        LINKS, "qva", False, "acceleration of the centre of mass of each link, gravity included", "m/s^2", _acceleration
+        LINKS,
+        "qva",
+        False,
+        "acceleration of the centre of mass of each link, gravity included",
+        "m/s^2",
+        r"{{}}^{i_}\dot{{v}}_{{C_{{{i}{x}}}}}",
     ),
-    "F": Quantity(LINKS, "qva", False, "net force on each link", "N", _of_link("F")),
-    "N": Quantity(LINKS, "qva", False, "net moment on each link about its centre of mass", "N m", _of_link("N")),
-    "f": Quantity(LINKS, "qva", True, "force that the link before exerts on each link", "N", _of_link("f")),
+    "F": Quantity(LINKS, "qva", False, "net force on each link", "N", "{{}}^{i_}F_{x}"),
+    "N": Quantity(LINKS, "qva", False, "net moment on each link about its centre of mass", "N m", "{{}}^{i_}N_{x}"),
+    "f": Quantity(LINKS, "qva", True, "force that the link before exerts on each link", "N", "{{}}^{i_}f_{x}"),
     "n": Quantity(
         LINKS,
         "qva",
         True,
         "moment that the link before exerts on each link, about the origin of the link's frame",
         "N m",
-        _of_link("n"),
+        "{{}}^{i_}n_{x}",
     ),
     "tau": Quantity(
         JOINTS,
@@ -104,18 +89,18 @@ QUANTITIES: Mapping[str, Quantity] = {
         True,
         "driving force of each joint: the component of n or f along its axis, plus joint friction and armature",
         "N m or N",
-        _of_joint(r"\tau"),
+        r"\tau_{i_}",
     ),
-    "M": Quantity(PAIRS, "q", False, "mass matrix, armature included", "kg m^2, kg m or kg", _of_pair("M")),
+    "M": Quantity(PAIRS, "q", False, "mass matrix, armature included", "kg m^2, kg m or kg", "M_{{{i},{j}}}"),
     "C": Quantity(
         PAIRS,
         "qv",
         False,
         "Coriolis and centrifugal matrix, of Christoffel symbols",
         "N m s, N s or kg/s",
-        _of_pair("C"),
+        "C_{{{i},{j}}}",
     ),
-    "g": Quantity(JOINTS, "q", False, "driving force that holds the robot still", "N m or N", _of_joint("g")),
+    "g": Quantity(JOINTS, "q", False, "driving force that holds the robot still", "N m or N", "g_{i_}"),
 }
 """By name; all vectors of links are in the link's own frame {i}."""
 

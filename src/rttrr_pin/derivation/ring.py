@@ -34,7 +34,7 @@ class Ring:
         self._circles = [
             (i, self[name] ** 2 + self[cosine] ** 2 - 1)
             for i, name in enumerate(self._names)
-            if (cosine := self.cosine_of(name)) in self.symbols and cosine is not None
+            if self.symbols[name].role is Role.SINE and (cosine := "c" + name.removeprefix("s")) in self.symbols
         ]
 
     def __getitem__(self, name: str) -> Polynomial:
@@ -47,12 +47,6 @@ class Ring:
     def names(self, *roles: Role) -> list[str]:
         """The symbols of some roles, in their order."""
         return [name for name, symbol in self.symbols.items() if symbol.role in roles]
-
-    def cosine_of(self, name: str) -> str | None:
-        """The cosine that goes with a sine; None for any other symbol."""
-        if self.symbols[name].role is not Role.SINE:
-            return None
-        return "c" + name.removeprefix("s")
 
     def lift(self, x: Any) -> Polynomial:
         """Any scalar (an integer, a fraction, a polynomial) as a polynomial."""
@@ -104,11 +98,6 @@ class Ring:
     def derivative(self, x: Scalar, name: str) -> Polynomial:
         """The partial derivative by a symbol; a sine or cosine counts as a symbol of its own."""
         return self.lift(x).derivative(name)
-
-    def substituted(self, x: Any, values: Mapping[str, Any]) -> Polynomial:
-        """The polynomial with others in place of some symbols."""
-        images = [self.lift(values[name]) if name in values else self[name] for name in self._names]
-        return self.reduced(self.lift(x).compose(*images, ctx=self._context))
 
 
 def exact(value: float) -> fmpq:

@@ -97,49 +97,60 @@ class Stepwise:
         taken = {symbol.name for symbol in (*robot.motion, *robot.parameters.symbols)}
         self._names = _free_names(len(robot.model.links), taken)
         self._places = {name: place for place, name in self._names.items()}
-        self.robot = replace(robot, steps=tuple(Symbol(name, name, Role.STEP) for name in self._places))
+        self.robot = robot = replace(robot, steps=tuple(Symbol(name, name, Role.STEP) for name in self._places))
         self.steps: dict[str, Step] = {}
+        # first, whatever is asked for: the other runs share its w
+        self._motion = self._result(Run(robot.model, robot.v, robot.a, robot.gravity, robot.payloads))
 
-    def motion(self) -> Result:
-        """The five quantities of the motion itself."""
-        robot = self.robot
-        return self._result(Run(robot.model, robot.v, robot.a, robot.gravity, robot.payloads))
+    def quantity(self, name: str) -> Iterable[Expression]:
+        """The entries of a quantity, the last axis fastest."""
+        match name:
+            case "M":
+                return self._mass_matrix()
+            case "C":
+                return self._coriolis()
+            case "g":
+                return self._gravity()
+            case "tau":
+                return map(self._terms, self._motion.tau)
+            case "v_dot_C":
+                robot = self.robot
+                run = Run(robot.model, robot.v, robot.a, robot.gravity, accelerations=True)
+                vectors = self._result(run).F
+            case _:
+                vectors = getattr(self._motion, name)
+        return (self._terms(component) for vector in vectors for component in vector)
 
-    def accelerations(self) -> list[Vector]:
-        """v_dot_C of each link."""
-        robot = self.robot
-        return self._result(Run(robot.model, robot.v, robot.a, robot.gravity, accelerations=True)).F
-
-    def gravity(self) -> list[Expression]:
+    def _gravity(self) -> list[Expression]:
         """What holds the robot still."""
         model = self.robot.model.without_joint_effects()
         nothing = [0] * model.nv
         run = Run(model, nothing, nothing, self.robot.gravity, suffix="_g", latex=",g")
-        return [self.terms(x, run) for x in self._result(run).tau]
+        return [self._terms(x, run) for x in self._result(run).tau]
 
-    def mass_matrix(self) -> list[list[Expression]]:
+    def _mass_matrix(self) -> list[Expression]:
         """M(q), armature included; of what mirrors, the half that serial arms have the simpler form of."""
         model = _with_armature_alone(self.robot.model)
         columns = []
-        for j, symbol in enumerate(self._motion(Role.ACCELERATION)):
+        for j, symbol in enumerate(self._symbols(Role.ACCELERATION)):
             unit = [int(i == j) for i in range(model.nv)]
             run = Run(model, [0] * model.nv, unit, suffix=f"_a{j + 1}", latex=f",{symbol.latex}", by=symbol.dimension)
-            columns.append([self.terms(x, run) for x in self._result(run).tau])
-        return [[columns[max(i, j)][min(i, j)] for j in range(model.nv)] for i in range(model.nv)]
+            columns.append([self._terms(x, run) for x in self._result(run).tau])
+        return [columns[max(i, j)][min(i, j)] for i in range(model.nv) for j in range(model.nv)]
 
-    def coriolis(self) -> list[list[Expression]]:
+    def _coriolis(self) -> list[Expression]:
         """C(q, v), by its columns 1/2 d tau / d v_j."""
         model, half = self.robot.model.without_joint_effects(), fmpq(1, 2)
         columns = []
-        for j, symbol in enumerate(self._motion(Role.RATE)):
+        for j, symbol in enumerate(self._symbols(Role.RATE)):
             v = [Dual(x, {0: 1}) if i == j else x for i, x in enumerate(self.robot.v)]
             run = Run(
                 model, v, [0] * model.nv, suffix=f"_v{j + 1}", latex=f",{symbol.latex}", by=symbol.dimension, dual=True
             )
-            columns.append([self.terms(_part(x) * half, run) for x in self._result(run).tau])
-        return [[column[i] for column in columns] for i in range(model.nv)]
+            columns.append([self._terms(_part(x) * half, run) for x in self._result(run).tau])
+        return [column[i] for i in range(model.nv) for column in columns]
 
-    def terms(self, x: Scalar, run: Run | None = None) -> Expression:
+    def _terms(self, x: Scalar, run: Run | None = None) -> Expression:
         """A polynomial of a run (None: of the motion itself), with the names that its steps have outside it."""
         ring, suffix = self.robot.ring, run.suffix if run else ""
         return {
@@ -154,7 +165,7 @@ class Stepwise:
         vector, link, axis = self._places[name]
         return (self._names["w", link, axis] if vector == SPIN else name) + suffix
 
-    def _motion(self, role: Role) -> list[Symbol]:
+    def _symbols(self, role: Role) -> list[Symbol]:
         return [symbol for symbol in self.robot.motion if symbol.role is role]
 
     def _result(self, run: Run) -> Result:
@@ -188,7 +199,7 @@ class Stepwise:
         name = self._names[place]
         outside = self._outside(name, run.suffix)
         if outside not in self.steps:
-            self.steps[outside] = Step(_symbol(place, outside, run), self.terms(polynomial, run))
+            self.steps[outside] = Step(_symbol(place, outside, run), self._terms(polynomial, run))
         return self.robot.ring[name]
 
 

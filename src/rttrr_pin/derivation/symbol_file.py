@@ -7,7 +7,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.model import Model
 from rttrr_pin.derivation.expressions import read_expression
 from rttrr_pin.derivation.frame_table import ENTRIES, joint_motion, model_of
@@ -20,7 +19,7 @@ from rttrr_pin.derivation.symbolic_robot import (
     SymbolicRobot,
     value_of_slot,
 )
-from rttrr_pin.derivation.symbols import INERTIA, LENGTH, MASS, NUMBER, Dimension, Expression, Symbol
+from rttrr_pin.derivation.symbols import INERTIA, LENGTH, MASS, Dimension, Expression, Symbol, dimension_of
 from rttrr_pin.derivation.tables import Table, read_table
 from rttrr_pin.derivation.templates import Declaration, declarations
 from rttrr_pin.errors import InputError, RttrrError
@@ -31,6 +30,14 @@ PUBLISHED = Path(__file__).parent / "data"
 
 SYMBOL_KEYS = ("robot", "payload", "link", "symbol", "values", "preface")
 ROBOT_KEYS = ("urdf", "gravity")
+PLACES: Mapping[str, Sequence[tuple[int, ...]]] = {
+    "mass": ((),),
+    "origin": ((0,), (1,), (2,)),
+    "com": ((0,), (1,), (2,)),
+    "inertia": ENTRIES,
+}
+"""The numbers of a link, by their axes."""
+
 LINK_KEYS = ("name", "parent", "joint", "origin", "rpy_degrees", "mass", "com", "inertia")
 
 USUAL: Mapping[Dimension, float] = {LENGTH: 0.3, MASS: 2.0, INERTIA: 0.1}
@@ -93,10 +100,13 @@ def read_symbols(file: Table, path: Path, latex: bool, model: Model | None = Non
     slots = dict(_slots(links, about, [symbol.name for symbol in symbols]))
     values = _given_values(file, symbols)
     if model is not None or "urdf" in about.entries:
-        model = _checked(model or load(_beside(path, about.get("urdf", str))).model, links)
-        slots = {
-            _moved(slot, [model.link_index(link.get("name", str)) for link in links]): x for slot, x in slots.items()
-        }
+        if model is None:
+            name = about.get("urdf", str)
+            beside = path.parent / name  # a file; where there is none, the name is what `load` takes
+            model = load(str(beside) if beside.is_file() else name).model
+        _check_frames(model, links)
+        places = [model.link_index(link.get("name", str)) for link in links]
+        slots = {_moved(slot, places): x for slot, x in slots.items()}
         values = _values_in(model, slots, values, about)
     else:
         if not links:
@@ -107,7 +117,7 @@ def read_symbols(file: Table, path: Path, latex: bool, model: Model | None = Non
         )
     payload_link, payload = _payload(file.table("payload").only(("link", "force", "moment")), model, symbols)
     slots |= payload
-    _check_dimensions(slots, symbols, file)
+    _check_dimensions(slots, {symbol.name: symbol for symbol in symbols}, file)
     roles = {name: SLOTS[slot[0]].role for slot, x in slots.items() for factors in x for name, _ in factors}
     idle = [symbol.name for symbol in symbols if symbol.name not in roles]
     if idle:
@@ -127,7 +137,7 @@ def spell(spellings: dict[str, str], printed: Sequence[str], name: str, table: T
 
 
 def _declared(file: Table, links: int, latex: bool) -> tuple[dict[str, Declaration], dict[str, str]]:
-    """The declared symbols by name, and the name of each spelling."""
+    """Declarations by name, and the name of each spelling."""
     declared: dict[str, Declaration] = {}
     spellings: dict[str, str] = {}
     for table in file.tables("symbol", "[[symbol]]"):
@@ -151,26 +161,16 @@ def _given_values(file: Table, symbols: Sequence[Symbol]) -> dict[str, float]:
     return values
 
 
-def _beside(path: Path, name: str) -> str:
-    """A file beside another; where there is none, the name is what `load` takes."""
-    return str(path.parent / name) if (path.parent / name).is_file() else name
-
-
 def _slots(links: Sequence[Table], about: Table, names: Sequence[str]) -> Iterator[tuple[Slot, Expression]]:
     """The expression of each number that the tables state; links by their position in the table."""
     for i, link in enumerate(links):
         link.only(LINK_KEYS)
         read = _reader(link, names)
-        if "mass" in link.entries:
-            yield ("mass", i), read(link.texts("mass", 1)[0])
-        for key in ("origin", "com"):
+        for key, places in PLACES.items():
             if key in link.entries:
-                for x, text in enumerate(link.texts(key, 3)):
-                    yield (key, i, x), read(text)
-        if "inertia" in link.entries:
-            for (x, y), text in zip(ENTRIES, link.texts("inertia", 6), strict=True):
-                yield ("inertia", i, x, y), read(text)
-                yield ("inertia", i, y, x), read(text)
+                for place, text in zip(places, link.texts(key, len(places)), strict=True):
+                    yield (key, i, *place), read(text)
+                    yield (key, i, *place[::-1]), read(text)  # tensors are symmetric
     if "gravity" in about.entries:
         for x, text in enumerate(about.texts("gravity", 3)):
             yield ("gravity", x), _reader(about, names)(text)
@@ -189,7 +189,6 @@ def _reader(table: Table, names: Sequence[str]) -> Callable[[str], Expression]:
 
 
 def _payload(table: Table, model: Model, symbols: Sequence[Symbol]) -> tuple[int | None, dict[Slot, Expression]]:
-    """The link that the payload acts at, and its expressions."""
     if not table.entries:
         return None, {}
     name = table.get("link", str, model.links[-1].name)
@@ -200,39 +199,31 @@ def _payload(table: Table, model: Model, symbols: Sequence[Symbol]) -> tuple[int
     return model.link_index(name), {(key, x): read(text) for key, row in texts.items() for x, text in enumerate(row)}
 
 
-def _check_dimensions(slots: Mapping[Slot, Expression], symbols: Sequence[Symbol], file: Table) -> None:
+def _check_dimensions(slots: Mapping[Slot, Expression], symbols: Mapping[str, Symbol], file: Table) -> None:
     """Each symbol may stand only for what it measures; a bare number has the unit of its place."""
-    dimensions = {symbol.name: symbol.dimension for symbol in symbols}
     for slot, expression in slots.items():
         wanted = SLOTS[slot[0]].dimension
-        for factors in expression:
-            got = NUMBER
-            for name, power in factors:
-                got = got.times(dimensions[name], power)
-            if factors and got != wanted:
+        for factors in filter(None, expression):
+            if (got := dimension_of(factors, symbols)) != wanted:
                 shown = " ".join(f"{name}^{power}" if power > 1 else name for name, power in factors)
                 raise file.error(f"{slot[0]} has {shown}, which measures {got}: expected {wanted}")
 
 
-def _checked(model: Model, links: Sequence[Table]) -> Model:
-    """The model of a URDF, once the table of frames agrees with it."""
+def _check_frames(model: Model, links: Sequence[Table]) -> None:
+    """The table of frames agrees with the model of a URDF."""
     for link in links:
         name = link.get("name", str)
         if name not in model.link_names:
             raise link.error(f"the URDF has no link {name!r}: it has {', '.join(model.link_names)}")
         if "joint" in link.entries:
             joint = model.joints[model.link_index(name)]
-            if not _moves_so(joint, *joint_motion(link)):
-                axis = f" about or along {joint.axis.tolist()}" if joint.nv else ""
+            motion, axis = joint_motion(link)
+            same_type = joint.type.name == motion or (motion == "revolute" and joint.type.rotates)
+            if not same_type or (motion != "fixed" and tuple(joint.axis.tolist()) != axis):
+                moves = f" about or along {joint.axis.tolist()}" if joint.nv else ""
                 raise link.error(
-                    f"joint is {link.entries['joint']!r}; in the URDF {joint.name} is {joint.type.name}{axis}"
+                    f"joint is {link.entries['joint']!r}; in the URDF {joint.name} is {joint.type.name}{moves}"
                 )
-    return model
-
-
-def _moves_so(joint: Joint, motion: str, axis: tuple[float, ...]) -> bool:
-    same = joint.type.name == motion or (motion == "revolute" and joint.type.rotates)
-    return same and (motion == "fixed" or tuple(float(x) for x in joint.axis) == axis)
 
 
 def _moved(slot: Slot, places: Sequence[int]) -> Slot:

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 from rttrr_pin.core.model import Model
 from rttrr_pin.derivation import Derivation, Symbol
-from rttrr_pin.derivation.motion import angles
+from rttrr_pin.derivation.motion import Angle, angles
 from rttrr_pin.derivation.symbolic_robot import AXES, Slot
 from rttrr_pin.derivation.symbols import ACCELERATION, FORCE, INERTIA, LENGTH, MASS, MOMENT, NUMBER, Dimension, Role
 from rttrr_pin.derivation.writers.wording import plain
@@ -64,10 +64,12 @@ def glossary(derivation: Derivation) -> list[Entry]:
     """The symbols that occur, but for sines, cosines and steps."""
     model = derivation.robot.model
     used = {name for terms in derivation.all_terms() for factors in terms for name, _ in factors}
-    used |= {f"q_{angle.place}" for angle in angles(model) if {f"s_{angle.suffix}", f"c_{angle.suffix}"} & used}
+    for angle in angles(model):  # in the table an angle stands as its coordinate, or, of a follower, by its sine
+        if {f"s_{angle.suffix}", f"c_{angle.suffix}"} & used:
+            used |= {f"q_{angle.place}", f"s_{angle.suffix}"}
     moving = [symbol for role in MOVING for symbol in derivation.robot.motion if symbol.role is role]
     entries = [_of_motion(model, symbol) for symbol in moving]
-    entries += [x for x in following_angles(model) if {x.symbol.name, "c" + x.symbol.name[1:]} & used]
+    entries += [_of_angle(model, angle) for angle in angles(model) if angle.suffix.startswith("j")]
     return [entry for entry in [*entries, *parameters(derivation, payload=True)] if entry.symbol.name in used]
 
 
@@ -97,18 +99,12 @@ def payload_places(derivation: Derivation) -> dict[str, tuple[int, int]]:
     return places
 
 
-def following_angles(model: Model) -> list[Entry]:
-    """The angles of joints that follow others, by their sine."""
-    return [
-        Entry(
-            Symbol(f"s_{angle.suffix}", rf"\varphi_{{{angle.suffix[1:]}}}", Role.SINE),
-            f"angle of {plain(model.joints[int(angle.suffix[1:]) - 1].name)}: "
-            f"{angle.multiplier!r} times coordinate {angle.place} plus {angle.offset!r}",
-            "rad",
-        )
-        for angle in angles(model)
-        if angle.suffix.startswith("j")
-    ]
+def _of_angle(model: Model, angle: Angle) -> Entry:
+    """The angle of a joint that follows another."""
+    joint = angle.suffix[1:]
+    symbol = Symbol(f"s_{angle.suffix}", rf"\varphi_{{{joint}}}", Role.SINE)
+    line = f"{angle.multiplier!r} times coordinate {angle.place} plus {angle.offset!r}"
+    return Entry(symbol, f"angle of {plain(model.joints[int(joint) - 1].name)}: {line}", "rad")
 
 
 def unit(symbol: Symbol) -> str:
