@@ -122,7 +122,7 @@ def test_the_paper_s_arm_has_as_many_terms_as_the_paper_prints() -> None:
     assert count(forms.n[0].x) > 400 and count(forms.n[0].y) > 400
 
 
-def test_a_ring_reduces() -> None:
+def test_a_ring_reduces_and_substitutes() -> None:
     angle = [
         Symbol("s_1", "sq_1", Role.SINE),
         Symbol("c_1", "cq_1", Role.COSINE),
@@ -132,6 +132,7 @@ def test_a_ring_reduces() -> None:
     s, c, x = (ring[name] for name in ("s_1", "c_1", "x"))
     assert ring.reduced(s * s + c * c) == ring.lift(1)
     assert ring.reduced(s**3 + s * c**2) == s
+    assert ring.substituted(x * s, {"x": s}) == ring.reduced(s * s)
     assert ring.polynomial(ring.terms(2 * x * c - 3)) == 2 * x * c - 3
     assert dimension_of((("x", 2), ("c_1", 1)), ring.symbols) == Dimension(length=2)
 

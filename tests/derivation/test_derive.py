@@ -27,12 +27,11 @@ from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.derivation import forms
 from rttrr_pin.derivation.closed_forms import closed_forms
-from rttrr_pin.derivation.collect import Presenter
+from rttrr_pin.derivation.collect import Power, Presenter, Product, Sum
 from rttrr_pin.derivation.latex import latex_number
 from rttrr_pin.derivation.motion import angles
 from rttrr_pin.derivation.ring import Ring, exact
 from rttrr_pin.derivation.symbols import Expression, Factors, Role, dimension_of
-from rttrr_pin.derivation.tree import Power, Product, Sum
 from rttrr_pin.derivation.writers import WRITERS
 from rttrr_pin.derivation.writers.content import ROOM, width
 from rttrr_pin.derivation.writers.printing import Notation

@@ -15,26 +15,13 @@ from rttrr_pin.auditing.wording import (
     evidence_words,
     verdict_words,
 )
-from rttrr_pin.derivation.writers.document import (
-    Block,
-    Bullets,
-    Code,
-    Display,
-    Document,
-    Formula,
-    Heading,
-    Paragraph,
-    Piece,
-    Strong,
-    Table,
-    Text,
-)
+from rttrr_pin.derivation.writers import document as doc
 from rttrr_pin.derivation.writers.html import html
 from rttrr_pin.derivation.writers.latex import latex
 from rttrr_pin.derivation.writers.markdown import markdown
 from rttrr_pin.derivation.writers.typeset import settable
 
-WRITERS: Mapping[str, Callable[[Document], str]] = {
+WRITERS: Mapping[str, Callable[[doc.Document], str]] = {
     "markdown": partial(markdown, formula="$`{}`$"),  # printed terms have stars and underscores in any place
     "latex": latex,
     "html": html,
@@ -55,95 +42,95 @@ def errata(result: AuditResult, form: str) -> str:
         result: the audit.
         form: "markdown", "latex" or "html".
     """
-    return WRITERS[form](Document(f"Errata: {result.publication.title}", tuple(_blocks(result))))
+    return WRITERS[form](doc.Document(f"Errata: {result.publication.title}", tuple(_blocks(result))))
 
 
-def _blocks(result: AuditResult) -> Iterator[Block]:
+def _blocks(result: AuditResult) -> Iterator[doc.Block]:
     yield from _opening(result)
     yield from _summary(result)
     if result.conventions:
-        yield Heading("How the text was read")
-        yield Bullets(tuple(_item(x.convention.title, prose(convention_words(x))) for x in result.conventions))
+        yield doc.Heading("How the text was read")
+        yield doc.Bullets(tuple(_item(x.convention.title, prose(convention_words(x))) for x in result.conventions))
     for heading, verdict in (("Not read", Verdict.UNPARSED), ("Symbols to declare", Verdict.UNDECLARED)):
         reasons = [(x, x.unparsed or "; ".join(x.undeclared)) for x in result.components if x.verdict is verdict]
         if reasons:
-            yield Heading(heading)
-            yield Bullets(tuple(_item(_name(x), prose(reason)) for x, reason in reasons))
+            yield doc.Heading(heading)
+            yield doc.Bullets(tuple(_item(_name(x), prose(reason)) for x, reason in reasons))
     wrong = [component for component in result.components if component.findings]
     if wrong:
-        yield Heading("Findings")
+        yield doc.Heading("Findings")
     for component in wrong:
         yield from _component(result, component)
     yield from _right(result)
 
 
-def _item(name: str, text: tuple[Piece, ...]) -> Text:
-    return Strong(f"{name}: "), *text
+def _item(name: str, text: tuple[doc.Piece, ...]) -> doc.Text:
+    return doc.Strong(f"{name}: "), *text
 
 
-def _opening(result: AuditResult) -> Iterator[Block]:
+def _opening(result: AuditResult) -> Iterator[doc.Block]:
     publication, totals = result.publication, result.totals
     wrong_dimension = dimension_summary(totals)
     compared = (
         f". {counted(len(publication.equations), 'equation')} with {counted(totals.components, 'component')} "
         "were compared, term by term, with the Newton-Euler recursion run on the same symbols."
     )
-    yield Paragraph((Strong(publication.source), compared))
-    yield Paragraph(
+    yield doc.Paragraph((doc.Strong(publication.source), compared))
+    yield doc.Paragraph(
         f"{result.count(Verdict.MATCH)} are right as printed, {result.count(Verdict.DIFFERS)} differ, with "
         f"{counted(totals.findings, 'finding')}, and {result.count(Verdict.UNPARSED)} could not be read."
         + (f" {wrong_dimension}." if wrong_dimension else "")
     )
     if not totals.findings:
         return
-    yield Paragraph(
+    yield doc.Paragraph(
         "Printed and derived terms are paired so that the fewest errors explain the difference. A finding is "
         "one error, and its name is that of the component with a number. Each corrected equation is given "
         "whole, the terms that were changed or added being marked; a term in excess is not in it any more."
     )
     rows = tuple((str(kind), MEANING[kind], str(number)) for kind, number in totals.kinds.items() if number)
-    yield Table(("kind", "what it is", "findings"), rows)
+    yield doc.Table(("kind", "what it is", "findings"), rows)
 
 
-def _summary(result: AuditResult) -> Iterator[Block]:
+def _summary(result: AuditResult) -> Iterator[doc.Block]:
     rows = list(cells(result.components))
     if not rows:
         return
     axes = [axis for axis in ("x", "y", "z", "") if any(axis in row for _, _, row in rows)]
-    yield Heading("All equations")
+    yield doc.Heading("All equations")
     body = tuple(
         (f"({number})", quantity, *(_verdict(row[axis]) if axis in row else "" for axis in axes))
         for number, quantity, row in rows
     )
-    yield Table(("equation", "states", *(axis or "scalar" for axis in axes)), body)
+    yield doc.Table(("equation", "states", *(axis or "scalar" for axis in axes)), body)
     if result.definitions:
         numbers = ", ".join(f"({number})" for number in result.definitions)
-        yield Paragraph(f"Only definitions of symbols, with nothing to compare: {numbers}.")
+        yield doc.Paragraph(f"Only definitions of symbols, with nothing to compare: {numbers}.")
 
 
-def _verdict(component: ComponentAudit) -> Text:
+def _verdict(component: ComponentAudit) -> doc.Text:
     text = verdict_words(component)
-    return text if component.verdict is Verdict.MATCH else Strong(text)
+    return text if component.verdict is Verdict.MATCH else doc.Strong(text)
 
 
-def _component(result: AuditResult, component: ComponentAudit) -> Iterator[Block]:
+def _component(result: AuditResult, component: ComponentAudit) -> Iterator[doc.Block]:
     language = result.publication.language
     line = f" (line {component.line} of the text)" if component.line else ""
-    yield Heading(_name(component), 2)
+    yield doc.Heading(_name(component), 2)
     counts = f"{counted(len(component.findings), 'finding')}; {component.printed_terms} terms printed"
-    yield Paragraph(f"{counts}{line}, {component.derived_terms} derived.")
+    yield doc.Paragraph(f"{counts}{line}, {component.derived_terms} derived.")
     rows = [row for group in component.by_term for row in _finding_rows(group, language)]
-    yield Table(("finding", "kind", "printed", "should be", "dimension"), tuple(rows), FINDING_WIDTHS)
+    yield doc.Table(("finding", "kind", "printed", "should be", "dimension"), tuple(rows), FINDING_WIDTHS)
     notes = [_item(group[0].id, prose(group[0].note)) for group in component.by_term if group[0].note]
     if notes or component.notes:
-        yield Bullets((*notes, *map(prose, component.notes)))
+        yield doc.Bullets((*notes, *map(prose, component.notes)))
     if component.evidence is not None:
-        yield Paragraph((Strong("Evidence. "), _units(" ".join(evidence_words(result, component)))))
+        yield doc.Paragraph((doc.Strong("Evidence. "), _units(" ".join(evidence_words(result, component)))))
     if component.corrected:
-        yield Paragraph(Strong("Corrected:"))
+        yield doc.Paragraph(doc.Strong("Corrected:"))
         code = language != "latex" or not all(settable(term) for term, _ in component.corrected)
         left = component.quantity if code else left_side(component.quantity)
-        yield Display(left, component.corrected, code)
+        yield doc.Display(left, component.corrected, code)
 
 
 def _units(text: str) -> str:
@@ -151,7 +138,7 @@ def _units(text: str) -> str:
     return text.replace(" m/s^2", "\u00a0m/s²").replace(" N m", "\u00a0N\u00a0m").replace(" N;", "\u00a0N;")
 
 
-def _finding_rows(group: Sequence[Finding], language: str) -> Iterator[tuple[Text, ...]]:
+def _finding_rows(group: Sequence[Finding], language: str) -> Iterator[tuple[doc.Text, ...]]:
     """A row for each error; the terms stand in the first."""
     for k, finding in enumerate(group):
         terms = (_term(finding.printed, language), _term(finding.derived, language))
@@ -160,11 +147,10 @@ def _finding_rows(group: Sequence[Finding], language: str) -> Iterator[tuple[Tex
         yield finding.id, str(finding.kind), *terms, dimension_words(finding)
 
 
-def _term(text: str | None, language: str) -> Piece:
-    """A term, set where it can be."""
+def _term(text: str | None, language: str) -> doc.Piece:
     if text is None:
         return "nothing"
-    return Formula(text) if language == "latex" and settable(text) else Code(text)
+    return doc.Formula(text) if language == "latex" and settable(text) else doc.Code(text)
 
 
 def left_side(name: str) -> str:
@@ -176,9 +162,9 @@ def left_side(name: str) -> str:
     return rf"{chr(92) + quantity if quantity == 'tau' else quantity}_{{{index}}}"
 
 
-def prose(text: str) -> tuple[Piece, ...]:
+def prose(text: str) -> tuple[doc.Piece, ...]:
     """Words with the formulas and names in them set apart."""
-    parts: list[Piece] = [""]
+    parts: list[doc.Piece] = [""]
     for word in WORD.findall(text):
         quoted = len(word) > 1 and word[0] == word[-1] and word[0] in "'`"
         body = word[1:-1] if quoted else word.rstrip(",;.:)")
@@ -192,24 +178,24 @@ def prose(text: str) -> tuple[Piece, ...]:
     return tuple(part for part in parts if part)
 
 
-def _part(text: str, quoted: bool) -> Piece:
+def _part(text: str, quoted: bool) -> doc.Piece:
     if re.search(r"\\|\{\}|[_^]\{", text):
-        return Formula(text) if settable(text) else Code(text)
-    return Code(text) if quoted or re.search(r"\w[_^]\w", text) else text
+        return doc.Formula(text) if settable(text) else doc.Code(text)
+    return doc.Code(text) if quoted or re.search(r"\w[_^]\w", text) else text
 
 
-def _right(result: AuditResult) -> Iterator[Block]:
+def _right(result: AuditResult) -> Iterator[doc.Block]:
     right = [component for component in result.components if component.verdict is Verdict.MATCH]
     if not right:
         return
-    yield Heading("Right as printed")
+    yield doc.Heading("Right as printed")
     names: dict[str, list[str]] = {}
     for component in right:
         names.setdefault(f"({component.equation})", []).append(component.quantity)
-    yield Paragraph("; ".join(f"{number} {', '.join(quantities)}" for number, quantities in names.items()) + ".")
+    yield doc.Paragraph("; ".join(f"{number} {', '.join(quantities)}" for number, quantities in names.items()) + ".")
     notes = [_item(component.quantity, prose(note)) for component in right for note in component.notes]
     if notes:
-        yield Bullets(tuple(notes))
+        yield doc.Bullets(tuple(notes))
 
 
 def _name(component: ComponentAudit) -> str:

@@ -7,12 +7,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from fractions import Fraction
 from math import gcd, lcm
+from typing import TypeAlias
 
 from rttrr_pin.derivation.ring import Ring
 from rttrr_pin.derivation.symbols import Expression, Factors, Role, Symbol
-from rttrr_pin.derivation.tree import Power, Product, Sum
 
 GROUPS = (Role.ACCELERATION, Role.RATE, Role.SIGN, Role.GRAVITY, Role.PAYLOAD)
 """Symbols that terms are collected by; what has none of them comes last."""
@@ -28,6 +29,37 @@ LEAST, MOST = 4, 100
 
 SIMPLE = 64
 """The largest denominator of numbers that count as exact, and are factored out."""
+
+
+@dataclass(frozen=True, slots=True)
+class Power:
+    """A symbol to a power, 1 or more."""
+
+    name: str
+    exponent: int = 1
+
+
+@dataclass(frozen=True, slots=True)
+class Product:
+    """A coefficient times factors; the coefficient alone where there are none.
+
+    Attributes:
+        coefficient: with the sign.
+        factors: powers of symbols, then sums.
+    """
+
+    coefficient: Fraction
+    factors: tuple[Factor, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class Sum:
+    """Expression in the order in which they are printed; 0 where there are none."""
+
+    terms: tuple[Product, ...] = ()
+
+
+Factor: TypeAlias = Power | Sum
 
 
 class Presenter:

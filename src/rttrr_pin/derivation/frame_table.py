@@ -52,12 +52,7 @@ def joint_motion(link: Table) -> tuple[str, tuple[float, ...]]:
 
 
 def model_of(links: Sequence[Table], number: Number, has_gravity: bool) -> Model:
-    """The model of a table of frames.
-
-    Args:
-        links: the table, from the base outwards.
-        number: the number of each slot, links by their position in the table.
-        has_gravity: whether the table gives gravity; else it is the standard one.
+    """The model of a table of frames, from the base outwards; slots have links by their position in the table.
 
     Raises:
         EquationError: names, parents, joints or masses do not make a robot.

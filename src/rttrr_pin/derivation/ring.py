@@ -99,6 +99,11 @@ class Ring:
         """The partial derivative by a symbol; a sine or cosine counts as a symbol of its own."""
         return self.lift(x).derivative(name)
 
+    def substituted(self, x: Any, values: Mapping[str, Any]) -> Polynomial:
+        """The polynomial with others in place of some symbols."""
+        images = [self.lift(values[name]) if name in values else self[name] for name in self._names]
+        return self.reduced(self.lift(x).compose(*images, ctx=self._context))
+
 
 def exact(value: float) -> fmpq:
     """A float as the fraction that it is."""
@@ -106,15 +111,12 @@ def exact(value: float) -> fmpq:
 
 
 def evaluate(terms: Expression, values: Mapping[str, Any], number: Callable[[Fraction], Any] = float) -> Any:
-    """The value of a polynomial.
+    """The value of a polynomial, summed in the order of its terms.
 
     Args:
         terms: its terms.
         values: of each symbol, of any kind of scalar.
         number: makes such a scalar of a coefficient.
-
-    Returns:
-        The sum, in the order of the terms.
     """
     total = number(Fraction(0))
     for factors, coefficient in terms.items():

@@ -122,7 +122,6 @@ class Stepwise:
         return (self._terms(component) for vector in vectors for component in vector)
 
     def _gravity(self) -> list[Expression]:
-        """What holds the robot still."""
         model = self.robot.model.without_joint_effects()
         nothing = [0] * model.nv
         run = Run(model, nothing, nothing, self.robot.gravity, suffix="_g", latex=",g")

@@ -34,13 +34,8 @@ class Declaration:
     equal: str = ""
 
 
-def declarations(table: Table, links: int, latex: bool = True) -> Iterator[Declaration]:
-    """The symbols that an entry of [[symbol]] stands for.
-
-    Args:
-        table: the entry.
-        links: the number of links that `<i>` runs over.
-        latex: whether spellings are LaTeX.
+def declarations(table: Table, links: int, latex: bool) -> Iterator[Declaration]:
+    """The symbols that an entry of [[symbol]] stands for; `<i>` runs over so many links.
 
     Raises:
         EquationError: the entry lacks a name or has a dimension that does not exist.

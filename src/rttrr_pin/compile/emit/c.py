@@ -23,7 +23,7 @@ from textwrap import wrap
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.compile.emit import Array, Task, task
+from rttrr_pin.compile.emit import Array, Task
 from rttrr_pin.compile.expression import Op
 from rttrr_pin.compile.program import Field, Program
 from rttrr_pin.errors import InputError
@@ -68,34 +68,6 @@ NAME = "program"
 WIDTH = 110
 """Characters in a line of the comment."""
 
-DRIVER = """
-#include <stdint.h>
-
-static int64_t take(const int64_t *array, int64_t state, int64_t width, double *to) {
-    const char *from = (const char *)(intptr_t)array[0] + state * array[1];
-    int64_t bad = 0;
-    for (int64_t j = 0; j < width; ++j, from += array[2]) {
-        to[j] = array[3] ? (double)*(const float *)from : *(const double *)from;
-        bad |= !isfinite(to[j]);
-    }
-    return bad;
-}
-
-static int64_t give(const int64_t *array, int64_t state, int64_t width, const double *from) {
-    char *to = (char *)(intptr_t)array[0] + state * array[1];
-    int64_t bad = 0;
-    for (int64_t j = 0; j < width; ++j, to += array[2]) {
-        *(double *)to = from[j];
-        bad |= !isfinite(from[j]);
-    }
-    return bad;
-}
-
-int64_t run(const int64_t *arrays, int64_t start, int64_t stop) {
-    int64_t bad = 0;
-"""
-"""The head of what follows the program here: some states of a batch; `arrays` has four numbers for each array."""
-
 
 class CEmitter:
     """Writes C."""
@@ -129,7 +101,7 @@ class CEmitter:
         Raises:
             InputError: there is no C compiler, or it fails.
         """
-        return CExecutable(_compiled(code.decode() + DRIVER + "\n".join(_loop(inputs, outputs))))
+        return CExecutable(_compiled(code.decode() + _loop(inputs, outputs)))
 
 
 def identifier(text: str) -> str:
@@ -182,7 +154,6 @@ def number(x: float) -> str:
 
 
 def _comment(program: Program, name: str, robot: str, labels: Mapping[str, Sequence[str]]) -> Iterator[str]:
-    """What a reader must know."""
     yield f"/* {robot}: {', '.join(field.name for field in program.outputs)} of one state, by rttrr-pin."
     yield ""
     yield f"   {_signature(program, name)};"
@@ -212,18 +183,12 @@ def _wrapped(text: str, indent: int = 3) -> list[str]:
     return wrap(text, WIDTH, initial_indent="   ", subsequent_indent=" " * indent)
 
 
-def _loop(inputs: Sequence[Field], outputs: Sequence[Field]) -> Iterator[str]:
-    """The rest of the loop over states."""
-    fields = [*inputs, *outputs]
-    names = [f"x{k}" for k in range(len(fields))]
-    for field, name in zip(fields, names, strict=True):
-        yield f"    double {name}[{max(1, field.width)}];"
-    yield "    for (int64_t i = start; i < stop; ++i) {"
-    calls = [f"(arrays + {4 * k}, i, {field.width}, x{k})" for k, field in enumerate(fields)]
-    yield from (f"        bad |= take{call};" for call in calls[: len(inputs)])
-    yield f"        {NAME}({', '.join(names)});"
-    yield from (f"        bad |= give{call};" for call in calls[len(inputs) :])
-    yield "    }\n    return bad;\n}\n"
+def _loop(inputs: Sequence[Field], outputs: Sequence[Field]) -> str:
+    """What follows the function here: a loop over states whose numbers stand one behind the other."""
+    fields = [("const double", field) for field in inputs] + [("double", field) for field in outputs]
+    declared = ", ".join(f"{type_name} *x{k}" for k, (type_name, _) in enumerate(fields))
+    arguments = ", ".join(f"x{k} + i * {field.width}" for k, (_, field) in enumerate(fields))
+    return f"void run(long states, {declared}) {{\n    for (long i = 0; i < states; ++i) {NAME}({arguments});\n}}\n"
 
 
 def compiler() -> list[str]:
@@ -261,12 +226,21 @@ class CExecutable:
 
     def __init__(self, library: ctypes.CDLL) -> None:
         self._run = library.run
-        self._run.argtypes = (ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64)
-        self._run.restype = ctypes.c_int64
+        self._run.restype = None
 
     def bind(self, inputs: Sequence[Array], outputs: Sequence[NDArray[np.float64]]) -> Task:
-        """See `task`."""
-        return task(self._run, self, (*inputs, *outputs))
+        """The states of a task as arrays without gaps, whatever the strides and types of these are."""
+
+        def task(start: int, stop: int) -> bool:
+            taken = [np.ascontiguousarray(x[start:stop], dtype=np.float64) for x in inputs]
+            written = [np.empty((stop - start, x.shape[1])) for x in outputs]
+            pointers = [ctypes.c_void_p(x.ctypes.data) for x in (*taken, *written)]
+            self._run(ctypes.c_long(stop - start), *pointers)
+            for out, result in zip(outputs, written, strict=True):
+                out[start:stop] = result
+            return not all(np.isfinite(x).all() for x in (*taken, *written))
+
+        return task
 
 
 @cache

@@ -9,18 +9,8 @@ from rttrr_pin.derivation import QUANTITIES, Derivation, Symbol
 from rttrr_pin.derivation.collect import Presenter
 from rttrr_pin.derivation.latex import decimal, latex_number, latex_power
 from rttrr_pin.derivation.symbols import Expression
+from rttrr_pin.derivation.writers import document as doc
 from rttrr_pin.derivation.writers import wording as words
-from rttrr_pin.derivation.writers.document import (
-    Block,
-    Code,
-    Document,
-    Equations,
-    Formula,
-    Heading,
-    Paragraph,
-    Table,
-    Text,
-)
 from rttrr_pin.derivation.writers.glossary import Entry, glossary
 from rttrr_pin.derivation.writers.printing import Notation, lines
 
@@ -61,51 +51,48 @@ WIDTHS = (0.09, 0.53, 0.11, 0.27)
 """Symbol, meaning, unit, value."""
 
 
-def document_of(derivation: Derivation, preface: str = "") -> Document:
-    """What a document says.
-
-    Args:
-        derivation: what to write.
-        preface: a paragraph to put before all others.
-    """
-    return Document(f"Dynamic model of {words.plain(derivation.robot.model.name)}", tuple(_blocks(derivation, preface)))
+def document_of(derivation: Derivation, preface: str = "") -> doc.Document:
+    """What a document says; the preface is a paragraph to put before all others."""
+    return doc.Document(
+        f"Dynamic model of {words.plain(derivation.robot.model.name)}", tuple(_blocks(derivation, preface))
+    )
 
 
-def _blocks(derivation: Derivation, preface: str) -> Iterator[Block]:
+def _blocks(derivation: Derivation, preface: str) -> Iterator[doc.Block]:
     if preface:
-        yield Paragraph(_with_code(preface))
-    yield from (Paragraph(_with_code(text)) for text in words.conventions(derivation))
-    yield Paragraph(f"Links and joints: {words.names_of_links(derivation.robot.model)}.")
+        yield doc.Paragraph(_with_code(preface))
+    yield from (doc.Paragraph(_with_code(text)) for text in words.conventions(derivation))
+    yield doc.Paragraph(f"Links and joints: {words.names_of_links(derivation.robot.model)}.")
     if entries := glossary(derivation):
-        yield Heading("Symbols")
-        yield Table(("symbol", "meaning", "unit", "value"), tuple(map(_row, entries)), WIDTHS)
+        yield doc.Heading("Symbols")
+        yield doc.Table(("symbol", "meaning", "unit", "value"), tuple(map(_row, entries)), WIDTHS)
     if derivation.steps:
-        yield Heading(words.STEPS)
-        yield Paragraph(words.STEPS_MEANING)
+        yield doc.Heading(words.STEPS)
+        yield doc.Paragraph(words.STEPS_MEANING)
         yield _equations(derivation, ((step.symbol.latex, step.terms) for step in derivation.steps))
     for name, derived in derivation.quantities.items():
-        yield Heading(words.TITLES[name])
-        yield Paragraph(words.heading(name))
+        yield doc.Heading(words.TITLES[name])
+        yield doc.Paragraph(words.heading(name))
         upper = [at for at in derived.terms if name != "M" or at[0] <= at[1]]  # of a symmetric matrix
         yield _equations(derivation, ((QUANTITIES[name].latex(at), derived.terms[at]) for at in upper))
 
 
-def _with_code(text: str) -> Text:
+def _with_code(text: str) -> doc.Text:
     """Words, with what stands between backquotes as code."""
-    return tuple(Code(part) if k % 2 else part for k, part in enumerate(text.split("`")))
+    return tuple(doc.Code(part) if k % 2 else part for k, part in enumerate(text.split("`")))
 
 
-def _row(entry: Entry) -> tuple[Text, ...]:
+def _row(entry: Entry) -> tuple[doc.Text, ...]:
     unit = entry.unit.replace("^2", "²").replace(" ", "\u00a0")
-    value = "" if entry.value is None else Formula(decimal(entry.value))
-    return Formula(entry.symbol.latex), entry.meaning, unit, value
+    value = "" if entry.value is None else doc.Formula(decimal(entry.value))
+    return doc.Formula(entry.symbol.latex), entry.meaning, unit, value
 
 
-def _equations(derivation: Derivation, named: Iterable[tuple[str, Expression]]) -> Equations:
+def _equations(derivation: Derivation, named: Iterable[tuple[str, Expression]]) -> doc.Equations:
     """Polynomials with their names, but for those that only repeat their own name."""
     presenter, how = Presenter(derivation.symbols), notation(derivation.symbols)
     printed = [(left, lines(presenter.expression(terms), how, ROOM - width(left) - EM["="])) for left, terms in named]
-    return Equations(tuple((left, right) for left, right in printed if right != [left]))
+    return doc.Equations(tuple((left, right) for left, right in printed if right != [left]))
 
 
 def notation(symbols: Mapping[str, Symbol]) -> Notation:

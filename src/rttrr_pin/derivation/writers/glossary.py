@@ -134,7 +134,6 @@ def _of_motion(model: Model, symbol: Symbol) -> Entry:
 
 
 def _meaning(derivation: Derivation, slot: Slot) -> str:
-    """A number of a robot in words."""
     model, number, places = derivation.robot.model, str(slot[0]), [int(x) for x in slot[1:]]
     i = places.pop(0) if number in ("mass", "com", "inertia", "origin") else derivation.robot.payload_link
     names = {"axes": "".join(AXES[x] for x in sorted(places))}

@@ -5,18 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import pairwise
 
-from rttrr_pin.derivation.writers.document import (
-    Block,
-    Bullets,
-    Display,
-    Document,
-    Equations,
-    Heading,
-    Paragraph,
-    Table,
-    Text,
-    written,
-)
+from rttrr_pin.derivation.writers import document as doc
 from rttrr_pin.reporting.tex import code, document, escaped
 
 PREAMBLE = r"""\allowdisplaybreaks
@@ -31,7 +20,7 @@ MOST_LINES = 120
 """Of one environment, unless an equation alone has more: TeX holds it whole."""
 
 
-def latex(content: Document) -> str:
+def latex(content: doc.Document) -> str:
     """A document as LaTeX."""
     body = "\n\n".join(_block(block) for block in content.blocks)
     # to TeX, an empty line before a display is a paragraph of its own
@@ -39,24 +28,24 @@ def latex(content: Document) -> str:
     return document(PREAMBLE, f"{{\\raggedright\\LARGE\\bfseries {_words(content.title)}\\par}}\n\n{body}")
 
 
-def _block(block: Block) -> str:
+def _block(block: doc.Block) -> str:
     match block:
-        case Heading(text, level):
+        case doc.Heading(text, level):
             return rf"\{'sub' * (level - 1)}section*{{{_words(text)}}}"
-        case Paragraph(text):
+        case doc.Paragraph(text):
             return _text(text)
-        case Bullets(items):
+        case doc.Bullets(items):
             lines = "\n".join(rf"\item {{}}{_text(item)}" for item in items)
             return f"\\begin{{itemize}}\n{lines}\n\\end{{itemize}}"
-        case Table():
+        case doc.Table():
             return _table(block)
-        case Display():
+        case doc.Display():
             return _display(block)
-        case Equations():
+        case doc.Equations():
             return "\n".join(_aligned(lines) for lines in block.aligned(MOST_LINES, split=False))
 
 
-def _table(table: Table) -> str:
+def _table(table: doc.Table) -> str:
     """Columns of given widths, so that one run of TeX sets them."""
     columns = "".join(
         rf">{{\raggedright\arraybackslash}}p{{{width - 0.02:.3f}\textwidth}}" for width in table.widths
@@ -70,8 +59,8 @@ def _table(table: Table) -> str:
     )
 
 
-def _text(text: Text) -> str:
-    return written(text, _words, lambda words: rf"\textbf{{{words}}}", lambda tex: f"${_breakable(tex)}$", _code)
+def _text(text: doc.Text) -> str:
+    return doc.written(text, _words, lambda words: rf"\textbf{{{words}}}", lambda tex: f"${_breakable(tex)}$", _code)
 
 
 def _words(text: str) -> str:
@@ -89,7 +78,7 @@ def _breakable(tex: str) -> str:
     return tex.replace(r" \, ", r" \thinspaceorbreak ")
 
 
-def _display(display: Display) -> str:
+def _display(display: doc.Display) -> str:
     """A paragraph of terms, each in a box that is not broken, so that TeX breaks lines and pages before signs."""
     if display.code:
         return f"\\begin{{verbatim}}\n{display.program()}\n\\end{{verbatim}}"

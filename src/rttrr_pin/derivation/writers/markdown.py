@@ -5,18 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from rttrr_pin.derivation.writers.document import (
-    Block,
-    Bullets,
-    Display,
-    Document,
-    Equations,
-    Heading,
-    Paragraph,
-    Table,
-    Text,
-    written,
-)
+from rttrr_pin.derivation.writers import document as doc
 
 WIDTH = 90
 """About how many signs of a formula stand in one line."""
@@ -25,7 +14,7 @@ MOST_LINES = 16
 """Of one block of equations: renderers in browsers give up on long ones."""
 
 
-def markdown(document: Document, formula: str = "${}$") -> str:
+def markdown(document: doc.Document, formula: str = "${}$") -> str:
     """A document as Markdown.
 
     Args:
@@ -34,27 +23,27 @@ def markdown(document: Document, formula: str = "${}$") -> str:
             Markdown too; other renderers do not have it.
     """
 
-    def block_text(block: Block) -> str:
+    def block_text(block: doc.Block) -> str:
         match block:
-            case Heading(words, level):
+            case doc.Heading(words, level):
                 return f"{'#' * (level + 1)} {_escaped(words)}"
-            case Paragraph(text):
+            case doc.Paragraph(text):
                 return line(text)
-            case Bullets(items):
+            case doc.Bullets(items):
                 return "\n".join(f"- {line(item)}" for item in items)
-            case Table(heads, rows):
+            case doc.Table(heads, rows):
                 cells = [[line(cell).replace("|", r"\|") for cell in row] for row in rows]
                 return "\n".join([_row(heads), _row("---" for _ in heads), *map(_row, cells)])
-            case Display():
+            case doc.Display():
                 return _display(block)
-            case Equations():
+            case doc.Equations():
                 return "\n\n".join(
                     "\n".join(("$$", r"\begin{aligned}", " \\\\\n".join(lines), r"\end{aligned}", "$$"))
                     for lines in block.aligned(MOST_LINES, split=True)
                 )
 
-    def line(text: Text) -> str:
-        return written(text, _escaped, "**{}**".format, formula.format, _code)
+    def line(text: doc.Text) -> str:
+        return doc.written(text, _escaped, "**{}**".format, formula.format, _code)
 
     return "\n\n".join([f"# {_escaped(document.title)}", *map(block_text, document.blocks)]) + "\n"
 
@@ -79,7 +68,7 @@ def _fence(text: str, least: int) -> str:
     return "`" * max(least, 1 + max(map(len, re.findall("`+", text)), default=0))
 
 
-def _display(display: Display) -> str:
+def _display(display: doc.Display) -> str:
     if display.code:
         fence = _fence(display.program(), 3)
         return f"{fence}python\n{display.program()}\n{fence}"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import NamedTuple
 
-from rttrr_pin.derivation.tree import Power, Product, Sum
+from rttrr_pin.derivation.collect import Power, Product, Sum
 
 FULL = 0.6
 """How much of a line is filled before it may end."""
@@ -100,6 +100,5 @@ def _product(term: Product, notation: Notation, depth: int) -> list[Piece]:
 
 
 def _longer(pieces: Sequence[Piece], more: str) -> list[Piece]:
-    """The same with more behind the last."""
     *others, last = pieces
     return [*others, Piece(last.text + more, last.depth)]

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from textwrap import wrap
+from typing import Any
 
 from rttrr_pin.compile.emit.c import identifier
 from rttrr_pin.derivation import QUANTITIES, Derivation
-from rttrr_pin.derivation.collect import Presenter
+from rttrr_pin.derivation.collect import Presenter, Sum
 from rttrr_pin.derivation.motion import angles
-from rttrr_pin.derivation.quantities import Index, Quantity
+from rttrr_pin.derivation.quantities import Index
 from rttrr_pin.derivation.stepwise import needed
 from rttrr_pin.derivation.symbols import Factors, Role
-from rttrr_pin.derivation.tree import Sum
 from rttrr_pin.derivation.writers.glossary import axis_units, labelled, parameters, payload_places
 from rttrr_pin.derivation.writers.printing import Notation, lines
 from rttrr_pin.derivation.writers.templates import rendered
@@ -31,33 +31,6 @@ class Argument:
     name: str
     width: int
     meaning: str
-
-
-@dataclass(frozen=True, slots=True)
-class Routine:
-    """A function for one quantity.
-
-    Attributes:
-        name: of the quantity.
-        quantity: what it is.
-        shape: of the result for one state.
-        inputs: which of q, v, a, payload it takes.
-        definitions: what the symbols are that it uses, but for steps; each a line of code.
-        assignments: of the steps, then of the entries of the result.
-        entries: what the entries are called.
-    """
-
-    name: str
-    quantity: Quantity
-    shape: tuple[int, ...]
-    inputs: tuple[Argument, ...]
-    definitions: tuple[str, ...]
-    assignments: tuple[str, ...]
-    entries: tuple[str, ...]
-
-    def uses(self, argument: str) -> bool:
-        """Whether an input occurs: that of a function whose result is 0 does not."""
-        return any(f"{argument}[" in line or f"{argument}->" in line for line in self.definitions)
 
 
 @dataclass(frozen=True)
@@ -91,7 +64,7 @@ class Language:
         model = derivation.robot.model
         return rendered(
             self.template,
-            {"wrapped": _wrapped},
+            {"wrapped": _wrapped, "uses": _uses},
             robot=identifier(model.name),
             title=f"Dynamic model of {plain(model.name)}: {', '.join(derivation.quantities)}.",
             texts=[
@@ -104,7 +77,8 @@ class Language:
             routines=[self._routine(derivation, name) for name in derivation.quantities],
         )
 
-    def _routine(self, derivation: Derivation, name: str) -> Routine:
+    def _routine(self, derivation: Derivation, name: str) -> dict[str, Any]:
+        """The function for a quantity, as the template takes it."""
         quantity, derived = QUANTITIES[name], derivation.quantities[name]
         presenter, steps = Presenter(derivation.symbols), needed(derivation.steps, derived.terms.values())
         polynomials = [*(step.terms for step in steps), *derived.terms.values()]
@@ -121,18 +95,21 @@ class Language:
             earlier = seen.setdefault(frozenset(terms.items()), names[at])
             same = len(terms) > 1 and earlier != names[at]
             assignments.append(self._assignment(names[at], earlier if same else presenter.expression(terms)))
-        return Routine(
-            name,
-            quantity,
-            derived.shape,
-            tuple(argument for argument in _arguments(derivation) if argument.name in (*quantity.inputs, *payload)),
-            tuple(self.short.format(self.variable.format(x), self._definition(x, derivation)) for x in symbols),
-            tuple(assignments),
-            tuple(names.values()),
-        )
+        return {
+            "name": name,
+            "quantity": quantity,
+            "shape": derived.shape,
+            "inputs": [
+                argument for argument in _arguments(derivation) if argument.name in (*quantity.inputs, *payload)
+            ],
+            "definitions": [
+                self.short.format(self.variable.format(x), self._definition(x, derivation)) for x in symbols
+            ],
+            "assignments": assignments,
+            "entries": list(names.values()),
+        }
 
     def _definition(self, name: str, derivation: Derivation) -> str:
-        """What a symbol is made of."""
         symbol = derivation.symbols[name]
         match symbol.role:
             case Role.COORDINATE | Role.RATE | Role.ACCELERATION:
@@ -198,12 +175,16 @@ def _arguments(derivation: Derivation) -> Iterator[Argument]:
 
 
 def _angle(derivation: Derivation, suffix: str) -> str:
-    """The argument of a sine."""
     (angle,) = (angle for angle in angles(derivation.robot.model) if angle.suffix == suffix)
     coordinate = f"q[{angle.place - 1}]"
     if (angle.multiplier, angle.offset) == (1.0, 0.0):
         return coordinate
     return f"{angle.multiplier!r} * {coordinate} + {angle.offset!r}"
+
+
+def _uses(lines: Sequence[str], argument: str) -> bool:
+    """Whether an input occurs in definitions: in those of a function whose result is 0 it does not."""
+    return any(f"{argument}[" in line or f"{argument}->" in line for line in lines)
 
 
 def _wrapped(text: str, first: int = 0, others: int = 0) -> str:
