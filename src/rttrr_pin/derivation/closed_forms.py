@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -107,14 +107,13 @@ def closed_forms(robot: SymbolicRobot, most_terms: int | None = None) -> ClosedF
     arithmetic = symbolic_arithmetic(robot, keep)
     result = _run(robot, arithmetic, robot.bodies())
     moved = _run(robot, arithmetic, unit_masses(robot.bodies()))
-    vectors: Callable[[list[Vector]], list[Vector]] = lambda xs: [ring.reduced_vector(x) for x in xs]  # noqa: E731
     return ClosedForms(
         robot,
-        v_dot_C=vectors(moved.F),
-        F=vectors(result.F),
-        N=vectors(result.N),
-        f=vectors(result.f),
-        n=vectors(result.n),
+        v_dot_C=[ring.reduced_vector(x) for x in moved.F],
+        F=[ring.reduced_vector(x) for x in result.F],
+        N=[ring.reduced_vector(x) for x in result.N],
+        f=[ring.reduced_vector(x) for x in result.f],
+        n=[ring.reduced_vector(x) for x in result.n],
         tau=[ring.reduced(x) for x in result.tau],
     )
 

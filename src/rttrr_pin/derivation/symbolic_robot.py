@@ -16,18 +16,7 @@ from rttrr_pin.core.newton_euler import Payload
 from rttrr_pin.core.scalars import ROTATION_ERROR
 from rttrr_pin.derivation.motion import angles, index, motion_symbols
 from rttrr_pin.derivation.ring import Polynomial, Ring, exact
-from rttrr_pin.derivation.symbols import (
-    ACCELERATION,
-    FORCE,
-    INERTIA,
-    LENGTH,
-    MASS,
-    MOMENT,
-    Dimension,
-    Expression,
-    Role,
-    Symbol,
-)
+from rttrr_pin.derivation.symbols import DIMENSIONS, Dimension, Expression, Role, Symbol
 
 Slot = tuple[str | int, ...]
 """One number of a robot: ("mass", i), ("com", i, x), ("inertia", i, x, y), ("origin", i, x), ("gravity", x), and of the
@@ -52,13 +41,13 @@ class SlotType:
 
 
 SLOTS: Mapping[str | int, SlotType] = {
-    "mass": SlotType(MASS, lambda model, i: model.links[i].mass),
-    "com": SlotType(LENGTH, lambda model, i, x: float(model.links[i].com[x])),
-    "inertia": SlotType(INERTIA, lambda model, i, x, y: float(model.links[i].inertia[x, y])),
-    "origin": SlotType(LENGTH, lambda model, i, x: float(model.joints[i].p[x])),
-    "gravity": SlotType(ACCELERATION, lambda model, x: float(model.gravity[x]), Role.GRAVITY),
-    "force": SlotType(FORCE, lambda model, x: 0.0, Role.PAYLOAD),
-    "moment": SlotType(MOMENT, lambda model, x: 0.0, Role.PAYLOAD),
+    "mass": SlotType(DIMENSIONS["mass"], lambda model, i: model.links[i].mass),
+    "com": SlotType(DIMENSIONS["length"], lambda model, i, x: float(model.links[i].com[x])),
+    "inertia": SlotType(DIMENSIONS["inertia"], lambda model, i, x, y: float(model.links[i].inertia[x, y])),
+    "origin": SlotType(DIMENSIONS["length"], lambda model, i, x: float(model.joints[i].p[x])),
+    "gravity": SlotType(DIMENSIONS["acceleration"], lambda model, x: float(model.gravity[x]), Role.GRAVITY),
+    "force": SlotType(DIMENSIONS["force"], lambda model, x: 0.0, Role.PAYLOAD),
+    "moment": SlotType(DIMENSIONS["moment"], lambda model, x: 0.0, Role.PAYLOAD),
 }
 """By what a slot begins with."""
 

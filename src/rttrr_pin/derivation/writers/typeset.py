@@ -26,15 +26,12 @@ SPECIAL = frozenset('&$#%~<>`|"')
 def settable(tex: str) -> bool:
     """Whether LaTeX and MathML can both set a fragment in one line: braces paired, no script doubled or empty."""
     tokens = [token for token in TOKEN.findall(tex) if not token.isspace()]
-    if not tokens or not all(_known(token) for token in tokens):
+    known = [x in KNOWN if x.startswith("\\") else x.isascii() and x not in SPECIAL for x in tokens]
+    if not tokens or not all(known):
         return False
     if tokens.count(r"\left") != tokens.count(r"\right"):
         return False
     return _nested(tokens) and _complete(tokens) and _single(tokens)
-
-
-def _known(token: str) -> bool:
-    return token in KNOWN if token.startswith("\\") else token.isascii() and token not in SPECIAL
 
 
 def _nested(tokens: list[str]) -> bool:

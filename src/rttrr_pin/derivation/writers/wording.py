@@ -42,15 +42,13 @@ def conventions(derivation: Derivation) -> Iterator[str]:
         "angle are its cosine and sine. Gravity enters as the base accelerating upwards. The payload is what the robot "
         "exerts on its surroundings, in the axes of its link."
     )
-    yield (
-        "tau = M(q) a + C(q, v) v + g(q) + what the payload takes"
-        + (" + damping v + friction sign(v)" if _frictional(model) else "")
-        + (
-            "; dM/dt - 2 C is skew-symmetric."
-            if model.nq == model.nv and not _planar(model)
-            else "; v and a are the rates of the joints in their own frames."
-        )
+    frictional = any(joint.effects.damping or joint.effects.friction for joint in model.joints)
+    plain_rates = model.nq == model.nv and all(joint.nv <= 1 for joint in model.moving)
+    friction = " + damping v + friction sign(v)" if frictional else ""
+    rates = (
+        "dM/dt - 2 C is skew-symmetric" if plain_rates else "v and a are the rates of the joints in their own frames"
     )
+    yield f"tau = M(q) a + C(q, v) v + g(q) + what the payload takes{friction}; {rates}."
     if derivation.form == "stepwise":
         yield (
             f"The form is stepwise ({derivation.reason}): steps are named as the recursion finishes them, each in "
@@ -70,11 +68,3 @@ def names_of_links(model: Model) -> str:
     """Which number is which link and joint."""
     pairs = enumerate(zip(model.links, model.joints, strict=True), start=1)
     return "; ".join(f"{i}: {plain(link.name)} on {plain(joint.name)} ({joint.type})" for i, (link, joint) in pairs)
-
-
-def _frictional(model: Model) -> bool:
-    return any(joint.effects.damping or joint.effects.friction for joint in model.joints)
-
-
-def _planar(model: Model) -> bool:
-    return any(joint.nv > 1 for joint in model.moving)
