@@ -22,6 +22,10 @@ class CacheWarning(UserWarning):
     """Compiled kernels cannot be kept on disk; all else goes on."""
 
 
+class LoadWarning(UserWarning):
+    """A robot was loaded, and something that its source says, or may say, takes no part in its dynamics."""
+
+
 class ShapeError(InputError):
     """An array has the wrong shape.
 

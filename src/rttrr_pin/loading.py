@@ -3,46 +3,80 @@
 from __future__ import annotations
 
 import os
+import warnings
+from dataclasses import replace
 from typing import Literal
 
 from numpy.typing import ArrayLike
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.inputs import vectors
-from rttrr_pin.core.model import STANDARD_GRAVITY
-from rttrr_pin.errors import InputError, ShapeError
+from rttrr_pin.core.joints import FLOATING
+from rttrr_pin.core.model import STANDARD_GRAVITY, Model
+from rttrr_pin.errors import InputError, LoadWarning, ShapeError
 from rttrr_pin.robot import Robot
-from rttrr_pin.urdf.sources import AnySource, robots_in
+from rttrr_pin.urdf.sources import AnySource, mjcf_path, robots_in
 
 
 def load(
     source: AnySource,
-    gravity: ArrayLike = STANDARD_GRAVITY,
+    gravity: ArrayLike | None = None,
     base: Literal["fixed", "floating"] = "fixed",
     friction: bool = False,
 ) -> Robot:
     """Load a robot.
 
+    An object is read as it stands: joints keep their order, armature is part of tau, gravity is the object's. What it
+    has and a tree of links and joints has not (springs, closed loops, ...) takes no part, and a `LoadWarning` says so;
+    `robot.model.notes` has all that there is to say, and the reports of `validate` show it.
+
     Args:
         source: the name of a bundled robot (`"rttrr"`) or of an example robot (`"example:panda"`, with the extra
-            `robots`); the path of a URDF, of a xacro file (with the extra `xacro`), or of a folder with one of them;
-            the text of a URDF; or a `yourdfpy.URDF`.
-        gravity: the gravity field in the base frame, (3,) [m/s^2]: a free body accelerates by it.
+            `robots`); the path of a URDF, of a xacro file (with the extra `xacro`), of an MJCF file (with the extra
+            `mujoco`), or of a folder with a URDF or xacro file; the text of a URDF; or an object: `pinocchio.Model`,
+            `mujoco.MjModel`, `yourdfpy.URDF`.
+        gravity: the gravity field in the base frame, (3,) [m/s^2]: a free body accelerates by it. Without it that of
+            the object or MJCF file, and (0, 0, -9.81) of a URDF.
         base: `"floating"` puts the root link on a floating joint (Pinocchio's `root_joint`): seven more coordinates,
-            position and quaternion (x, y, z, w), and six more rates, the twist in the root link's frame.
-        friction: whether damping and friction of `<dynamics>` take part in tau. Pinocchio's `rnea` leaves them out.
+            position and quaternion (x, y, z, w), and six more rates, the twist in the root link's frame. An object
+            that floats already stays as it is.
+        friction: whether damping and friction of the joints take part in tau. Pinocchio's `rnea` leaves them out;
+            MuJoCo's `mj_inverse` has them.
 
     Returns:
-        The robot, its links and joints in Pinocchio's order for the same file.
+        The robot, its links and joints in Pinocchio's order for the same file, or in the object's.
 
     Raises:
         UnknownNameError: there is neither such a file nor such a bundled robot, or no such example robot.
-        UrdfError: the file cannot be used; the message says where and why.
+        UrdfError: the file or object cannot be used; the message says where and why.
         ShapeError, NumberError: gravity is no vector of three finite numbers.
         InputError: the source is of another type, an extra is missing, or base is neither "fixed" nor "floating".
     """
-    from rttrr_pin.urdf.parser import read_document  # loads lxml, which a robot made from numbers does not need
-    from rttrr_pin.urdf.reader import model_of
+    from rttrr_pin.urdf.reader import read_urdf  # loads lxml, which a robot made from numbers does not need
 
+    if base not in ("fixed", "floating"):
+        raise InputError(f"base is {base!r}: expected 'fixed' (bolted down) or 'floating'")
+    field = None if gravity is None else _field(gravity)
+    file = mjcf_path(source)
+    if file is not None:
+        from rttrr_pin.implementations.mjcf import compiled_mjcf
+
+        source = compiled_mjcf(file)
+    model = read_urdf(source)
+    if field is not None:
+        model = model.with_gravity(field)
+    if base == "floating":
+        model = _floating(model)
+    if not friction:
+        model = model.without_friction()
+    model = replace(model, notes=tuple(note for note in model.notes if not (friction and note.friction)))
+    left_out = [note.text for note in model.notes if note.left_out]
+    if left_out:
+        warnings.warn("\n".join(left_out), LoadWarning, stacklevel=2)
+    return Robot(model)
+
+
+def _field(gravity: ArrayLike) -> Array:
     field = vectors("gravity", gravity)
     if field.ndim != 1:
         raise ShapeError(
@@ -51,17 +85,25 @@ def load(
             got=field.shape,
             wanted="(3,)",
         )
-    if base not in ("fixed", "floating"):
-        raise InputError(f"base is {base!r}: expected 'fixed' (bolted down) or 'floating'")
-    model = model_of(read_document(source)).with_gravity(field)
-    if base == "floating":
-        model = model.with_floating_base()
-    return Robot(model if friction else model.without_joint_effects())
+    return field
+
+
+def _floating(model: Model) -> Model:
+    """The robot on a floating base, unless it is an object's that floats already."""
+    library = getattr(model.document, "written", "")
+    if library and model.joints and all(joint.type == FLOATING for joint in model.joints if joint.parent < 0):
+        return model
+    if library == "mujoco.MjModel":
+        raise InputError(
+            f"base is 'floating', and {model.name!r} stands in MuJoCo's world, which has no mass that could float: "
+            "add a <freejoint/> to the body that floats, or pass the URDF"
+        )
+    return model.with_floating_base()
 
 
 def load_all(
     folder: str | os.PathLike[str],
-    gravity: ArrayLike = STANDARD_GRAVITY,
+    gravity: ArrayLike | None = None,
     base: Literal["fixed", "floating"] = "fixed",
     friction: bool = False,
 ) -> dict[str, Robot]:

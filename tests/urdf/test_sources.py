@@ -16,7 +16,7 @@ import yourdfpy
 
 import rttrr_pin
 from rttrr_pin.core.model import Model
-from rttrr_pin.errors import InputError, RttrrError, UnknownNameError, UrdfError
+from rttrr_pin.errors import InputError, LoadWarning, RttrrError, UnknownNameError, UrdfError
 from rttrr_pin.urdf import sources
 from rttrr_pin.urdf.yourdfpy_object import as_urdf
 from support.serial_chains import EXAMPLES, random_chain
@@ -297,6 +297,9 @@ def test_xacro_that_was_not_expanded_is_refused() -> None:
 # Objects of yourdfpy ------------------------------------------------------------------------------------------------
 
 
+UNTOLD = pytest.mark.filterwarnings("ignore:.*yourdfpy keeps nothing:rttrr_pin.errors.LoadWarning")
+
+
 def parsed(text: str, tmp_path: Path) -> yourdfpy.URDF:
     path = tmp_path / "robot.urdf"
     path.write_text(text)
@@ -304,6 +307,7 @@ def parsed(text: str, tmp_path: Path) -> yourdfpy.URDF:
 
 
 @pytest.mark.parametrize("source", ["rttrr", *EXAMPLES])
+@UNTOLD
 def test_a_yourdfpy_object_is_the_same_robot_to_the_last_bit(source: str, tmp_path: Path) -> None:
     wanted = rttrr_pin.load(EXAMPLES.get(source, source), friction=True).model
     got = rttrr_pin.load(parsed(wanted.urdf, tmp_path), friction=True).model
@@ -315,6 +319,7 @@ def test_a_yourdfpy_object_is_the_same_robot_to_the_last_bit(source: str, tmp_pa
                 assert np.abs(x - y).max() <= 64 * np.finfo(float).eps * max(1.0, np.abs(y).max())
 
 
+@UNTOLD
 def test_what_yourdfpy_would_not_write_is_kept(tmp_path: Path) -> None:
     """Its own writer leaves <mimic> out."""
     text = random_chain(3, ("revolute", "prismatic")).replace(
@@ -328,6 +333,7 @@ def test_what_yourdfpy_would_not_write_is_kept(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("pitch", [0.0, 0.7, math.pi / 2, -math.pi / 2, math.pi / 2 - 1e-9, 3.0])
+@UNTOLD
 def test_angles_survive_where_roll_and_yaw_are_one(pitch: float, tmp_path: Path) -> None:
     """The matrices are products, so that their small entries are rounding, as those of a CAD program are."""
     robot, euler = parsed(EXAMPLES["one-joint"], tmp_path), yourdfpy.urdf.tra.euler_matrix
@@ -356,6 +362,7 @@ def test_angles_survive_where_roll_and_yaw_are_one(pitch: float, tmp_path: Path)
     ],
     ids=lambda value: value if isinstance(value, str) else "",
 )
+@UNTOLD
 def test_objects_that_say_no_robot_are_refused(
     holder: str, name: str, value: Any, message: str, tmp_path: Path
 ) -> None:
@@ -370,3 +377,11 @@ def test_objects_that_say_no_robot_are_refused(
 def test_the_written_text_is_a_urdf_that_others_read(tmp_path: Path) -> None:
     robot = parsed(CHAIN, tmp_path)
     assert parsed(as_urdf(robot.robot, "x"), tmp_path).joint_names == robot.joint_names
+
+
+def test_what_yourdfpy_passed_over_in_silence_is_told(tmp_path: Path) -> None:
+    """Its object has no quaternion of URDF 1.1, and does not know its file."""
+    turned = CHAIN.replace("<origin ", '<origin quat_xyzw="0 0 1 0" ', 1)
+    with pytest.warns(LoadWarning, match="does not tell where: pass the file instead"):
+        robot = rttrr_pin.load(parsed(turned, tmp_path))
+    assert any("quat_xyzw" in note for note in rttrr_pin.validate(robot, "recursion", n_states=5).to_dict()["notes"])

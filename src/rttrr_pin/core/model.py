@@ -61,6 +61,21 @@ class Document(Protocol):
         """The text of the file."""
 
 
+@dataclass(frozen=True, slots=True)
+class Note:
+    """What a user must know of how a robot was read.
+
+    Attributes:
+        text: one line.
+        left_out: whether the source says, or may say, something that would change tau and takes no part in it.
+        friction: whether that is damping and friction, so that nothing need be said where they take part.
+    """
+
+    text: str
+    left_out: bool = False
+    friction: bool = False
+
+
 ROOT_JOINT, UNIVERSE = "root_joint", "universe"
 """Pinocchio's names for the joint of a floating base, and for what it floats in."""
 
@@ -77,6 +92,7 @@ class Model:
         gravity: the gravity field in the base frame, (3,) [m/s^2]: a free body accelerates by it.
         document: the file that the model was read from (`urdf/document.py`); None where it was made from numbers.
         floating: whether `with_floating_base` made it.
+        notes: what its source says beyond this, or was not asked.
     """
 
     name: str
@@ -86,6 +102,7 @@ class Model:
     gravity: Array = field(default_factory=lambda: np.array(STANDARD_GRAVITY))
     document: Document | None = None
     floating: bool = False
+    notes: tuple[Note, ...] = ()
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "gravity", frozen(self.gravity, (3,), "gravity"))
@@ -205,6 +222,13 @@ class Model:
     def without_joint_effects(self) -> Model:
         """The same robot, whose joints take no torque themselves."""
         return replace(self, joints=tuple(replace(joint, effects=JointEffects()) for joint in self.joints))
+
+    def without_friction(self) -> Model:
+        """The same robot, whose joints take only the torque of their armature."""
+        kept = [JointEffects(armature=joint.effects.armature) for joint in self.joints]
+        return replace(
+            self, joints=tuple(replace(joint, effects=own) for joint, own in zip(self.joints, kept, strict=True))
+        )
 
     def with_gravity(self, gravity: Array) -> Model:
         """The same robot in another gravity field."""

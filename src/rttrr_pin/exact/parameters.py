@@ -104,6 +104,10 @@ def exact_parameters(model: Model, parameters: Literal["read", "text"]) -> Exact
         raise InputError(
             f"robot {model.name!r} was made from numbers and has no file to take them from: pass parameters='doubles'"
         )
+    if document.written and parameters == "text":
+        raise InputError(
+            f"robot {model.name!r} was loaded from an object, which has doubles and no decimals: pass parameters='read'"
+        )
     for difference in _differences(model, model_of(document)):
         raise InputError(
             f"{difference} of robot {model.name!r} is not what its file says: the model was altered since it was "

@@ -71,7 +71,7 @@ def build(model: Model) -> Any:
         ImplementationError: MuJoCo refuses the file.
         ModelMismatchError: it read something else than we did.
     """
-    with _without_log():
+    with without_log():
         try:
             spec = mujoco.MjSpec.from_string(_bare(library.urdf_of(model, "MuJoCo")))
             bodies = {body.name: body for body in spec.bodies}
@@ -135,7 +135,7 @@ def _write(compiled: Any, body: int, mass: float, com: Array, tensor: Array) -> 
 
 
 @contextmanager
-def _without_log() -> Iterator[None]:
+def without_log() -> Iterator[None]:
     """MuJoCo's warnings (two limits are equal, ...) go to a file in the current folder unless someone takes them."""
     before = mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(lambda message: None)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -13,6 +14,39 @@ from rttrr_pin.core.joints import JOINT_TYPES, JointType
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.errors import InputError, UrdfError, shortened
 from rttrr_pin.urdf.document import NO_INERTIAL, UrdfDocument, UrdfJoint, UrdfLink
+from rttrr_pin.urdf.parser import read_document
+from rttrr_pin.urdf.sources import AnySource, find
+
+
+def read_urdf(source: AnySource) -> Model:
+    """Read a robot.
+
+    Args:
+        source: a name, a path, a text, ...: see `sources.py`.
+
+    Returns:
+        The model, links and joints in Pinocchio's order (see `UrdfDocument.walk`), or in an object's own.
+
+    Raises:
+        UnknownNameError, InputError, UrdfError: as in `read_document`; UrdfError also where numbers overflow.
+    """
+    file = find(source)
+    model = model_of(read_document(file))
+    if file.model is not None:
+        model = _completed(model, file.model)
+    return replace(model, notes=file.notes)
+
+
+def _completed(read: Model, own: Model) -> Model:
+    """A model that was read from the text of an object, in the object's order, with what the text could not say."""
+    links, joints = ({each.name: each for each in every} for every in (read.links, read.joints))
+    completed = []
+    for joint in own.joints:
+        other = joints[joint.name]
+        mimic = joint.mimic and other.mimic and replace(other.mimic, joint=joint.mimic.joint)
+        completed.append(replace(other, parent=joint.parent, mimic=mimic, limits=joint.limits, effects=joint.effects))
+    ordered = tuple(links[link.name] for link in own.links)
+    return replace(read, links=ordered, joints=tuple(completed), gravity=own.gravity)
 
 
 def model_of(document: UrdfDocument) -> Model:

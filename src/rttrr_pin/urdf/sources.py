@@ -1,4 +1,4 @@
-"""Where robots come from: bundled and example robots, paths, folders, texts, xacro files, objects of yourdfpy.
+"""Where robots come from: bundled and example robots, paths, folders, texts, xacro files, objects of other libraries.
 
 | a source | is |
 |---|---|
@@ -8,7 +8,9 @@
 | a path to a folder | the one `.urdf` or `.xacro` file in it or below |
 | a path that ends in `.xacro` | what ROS's package `xacro` makes of it; messages then give the lines of its output |
 | any other path | a URDF file |
-| a `yourdfpy.URDF` | see `yourdfpy_object.py` |
+| a `pinocchio.Model`, `mujoco.MjModel`, `yourdfpy.URDF` | see `pinocchio_object.py` and the like |
+
+Objects become the text of a URDF too, so that all goes on as with a file.
 """
 
 from __future__ import annotations
@@ -19,15 +21,16 @@ from collections import Counter
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeAlias, TypeGuard
+from typing import Any, TypeAlias
 
+from rttrr_pin.core.model import Model, Note
 from rttrr_pin.errors import InputError, UnknownNameError, UrdfError, shortened
 
-if TYPE_CHECKING:
-    import yourdfpy
+AnySource: TypeAlias = Any
+"""What `load` takes: str | os.PathLike[str] | pinocchio.Model | mujoco.MjModel | yourdfpy.URDF."""
 
-AnySource: TypeAlias = "str | os.PathLike[str] | yourdfpy.URDF"
-"""What `load` takes."""
+OBJECTS = {"pinocchio": "Model", "mujoco": "MjModel", "yourdfpy": "URDF"}
+"""Classes of objects that are robots, by library; a library of which there is an object is loaded."""
 
 LARGEST_FILE = 64 * 2**20
 """Bytes; the largest URDF of known robots has about one MiB."""
@@ -43,11 +46,23 @@ SUFFIXES = (".urdf", ".xacro")
 
 @dataclass(frozen=True, slots=True)
 class Source:
-    """The text of a URDF, what to call it in messages, and the folder where its file lies, if there is one."""
+    """The text of a URDF.
+
+    Attributes:
+        name: what to call it in messages.
+        text: of the file, or written from an object.
+        folder: where its file lies, if there is one.
+        written: the class of the object that the text was written from; empty where there is a file.
+        model: the object's, with what a URDF has no words for; None where the text says all.
+        notes: what a user must know of how it was read.
+    """
 
     name: str
     text: bytes
     folder: Path | None = None
+    written: str = ""
+    model: Model | None = None
+    notes: tuple[Note, ...] = ()
 
 
 @cache
@@ -109,18 +124,57 @@ def find(source: AnySource) -> Source:
             folder does not hold exactly one.
         InputError: the source is of another type, or an example robot is asked for without its package.
     """
-    if _is_yourdfpy(source):
-        from rttrr_pin.urdf.yourdfpy_object import as_urdf
-
-        name = f"<yourdfpy.URDF {shortened(str(source.robot.name))!r}>"
-        return Source(name, _encoded(as_urdf(source.robot, name), name))
+    if isinstance(source, Source):
+        return source
+    for library, kind in OBJECTS.items():
+        module = sys.modules.get(library)
+        if module is not None and isinstance(source, getattr(module, kind)):
+            return _of_object(source, module, f"{library}.{kind}")
     if isinstance(source, str):
         return _find_text(source)
     if isinstance(source, os.PathLike) and isinstance(os.fspath(source), str):
         return _find_path(Path(source))
     raise InputError(
-        f"the source is a {type(source).__name__}, expected a name, a path, the text of a URDF, or a yourdfpy.URDF"
+        f"the source is a {type(source).__name__}, expected a name, a path, the text of a URDF, or an object: "
+        f"{', '.join(f'{library}.{kind}' for library, kind in OBJECTS.items())}"
     )
+
+
+def _of_object(source: Any, module: Any, kind: str) -> Source:
+    """The text that is written from an object."""
+    if kind == "yourdfpy.URDF":
+        from rttrr_pin.urdf import yourdfpy_object
+
+        name = f"<{kind} {shortened(str(source.robot.name))!r}>"
+        notes = (Note(f"{name}: {yourdfpy_object.UNKNOWN}", left_out=True),)
+        return Source(name, _encoded(yourdfpy_object.as_urdf(source.robot, name), name), written=kind, notes=notes)
+    from rttrr_pin.urdf import mujoco_object, pinocchio_object
+    from rttrr_pin.urdf.writer import urdf_text
+
+    if kind == "pinocchio.Model":
+        name = f"<{kind} {shortened(source.name)!r}>"
+        model = pinocchio_object.as_model(source, name)
+    else:
+        name = f"<{kind} {shortened(mujoco_object.name_of(source))!r}>"
+        model = mujoco_object.as_model(source, module, name)
+    return Source(name, _encoded(urdf_text(model), name), written=kind, model=model, notes=model.notes)
+
+
+def mjcf_path(source: Any) -> Path | None:
+    """The path, if a source is that of a file of MJCF, MuJoCo's format: XML whose outermost element is <mujoco>."""
+    if not isinstance(source, str | os.PathLike) or not isinstance(os.fspath(source), str):
+        return None
+    if Path(source).suffix.lower() not in (".xml", ".mjcf"):
+        return None
+    from lxml import etree
+
+    try:
+        path = Path(source).expanduser()
+        with path.open("rb") as file:
+            start = etree.iterparse(file, events=("start",), resolve_entities=False, no_network=True, load_dtd=False)
+            return path if next(iter(start))[1].tag == "mujoco" else None
+    except (etree.XMLSyntaxError, OSError, ValueError, RuntimeError, StopIteration):
+        return None  # whoever reads it as a URDF says what is wrong
 
 
 def _find_text(source: str) -> Source:
@@ -212,12 +266,6 @@ def _xacro_fix(reason: str) -> str:
     if "Undefined substitution argument" in reason:
         return ": run `xacro FILE NAME:=VALUE` yourself and pass the URDF, or give the argument a default"
     return ""
-
-
-def _is_yourdfpy(source: object) -> TypeGuard[Any]:
-    """Whether this is a `yourdfpy.URDF`; yourdfpy, which takes long to load, is loaded already if so."""
-    module = sys.modules.get("yourdfpy")
-    return module is not None and isinstance(source, module.URDF)
 
 
 def _encoded(text: str, name: str) -> bytes:

@@ -46,6 +46,12 @@ MISPLACED = ("link", "joint", "inertial", "mass", "inertia", "axis", "limit", "m
 OTHER_FORMATS = ("gazebo", "transmission", "ros2_control", "sensor", "plugin")
 """Elements whose content is another format's, with links and joints of its own."""
 
+OTHER_ROOTS = {
+    "mujoco": "this is MJCF: pass the path of the file, .xml, to rttrr_pin.load or validate (inspect reads URDF alone)",
+    "sdf": "this is SDF, which is not read: convert it to URDF",
+}
+"""What other formats begin with, and the way on."""
+
 EXPANDED_FIRST = {
     "http://www.ros.org/wiki/xacro": "xacro, which must be expanded: name the file .xacro, or run xacro on it",
     "http://wiki.ros.org/xacro": "xacro, which must be expanded: name the file .xacro, or run xacro on it",
@@ -64,8 +70,9 @@ def check_words(root: Any, source: str) -> None:
         UrdfError: a word that is misspelt, out of place, in a namespace, or text where URDF has none; with its line.
     """
     if root.tag != "robot":
+        fix = OTHER_ROOTS.get(root.tag, "is this a URDF?")
         raise UrdfError(
-            f"the outermost element is <{_shown(root)}>, expected <robot>: is this a URDF?",
+            f"the outermost element is <{_shown(root)}>, expected <robot>: {fix}",
             source=source,
             line=root.sourceline,
         )

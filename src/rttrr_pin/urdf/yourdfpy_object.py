@@ -4,13 +4,12 @@ yourdfpy's own writer leaves out mimic joints and safety controllers. This one w
 axes, limits, dynamics and mimics, each number with all its digits. Visuals, collisions and materials, which do not
 enter dynamics, stay behind.
 
-What yourdfpy guessed when it read a file (1 for a missing `ixx`, 0 for a missing mass) cannot be told from what the
-file said: where there is a file, pass the file.
+What yourdfpy guessed when it read a file, and what it passed over, cannot be told from what the file said, nor does the
+object know its file: the user is told so.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from typing import Any
 from xml.etree import ElementTree as ET
@@ -20,11 +19,17 @@ from numpy.typing import NDArray
 
 from rttrr_pin.core.solids import rotation
 from rttrr_pin.errors import UrdfError
-from rttrr_pin.urdf.document import ENTRIES
 from rttrr_pin.urdf.vocabulary import ATTRIBUTES
+from rttrr_pin.urdf.writer import angles_of, tensor_words, written
 
 ROTATION_TOLERANCE = 8 * float(np.finfo(float).eps)
 """On each element of a rotation matrix, between the object's and the one that the written angles give back."""
+
+UNKNOWN = (
+    "yourdfpy keeps nothing that it does not know (quat_xyzw of URDF 1.1, elements that close loops), and fills in "
+    "what is missing (1 for ixx, 0 for a mass); the object does not tell where: pass the file instead"
+)
+"""What can be told of no object."""
 
 
 def as_urdf(robot: Any, source: str) -> str:
@@ -73,7 +78,7 @@ class _Writer:
             tensor = self.array("inertia", link.inertial.inertia, (3, 3))
             if not np.array_equal(tensor, tensor.T, equal_nan=True):
                 raise self.error(f"its inertia {tensor.tolist()} is not symmetric: make it so, inertia tensors are")
-            ET.SubElement(inertial, "inertia", {name: repr(float(tensor[at])) for name, at in ENTRIES.items()})
+            ET.SubElement(inertial, "inertia", tensor_words(tensor))
 
     def joint(self, parent: ET.Element, joint: Any) -> None:
         self.here = f'joint "{joint.name}"'
@@ -82,7 +87,7 @@ class _Writer:
             ET.SubElement(element, tag, self.texts(link=getattr(joint, tag)))
         self.origin(element, joint.origin)
         if joint.axis is not None:
-            ET.SubElement(element, "axis", xyz=_written(self.array("axis", joint.axis, (3,))))
+            ET.SubElement(element, "axis", xyz=written(self.array("axis", joint.axis, (3,))))
         self.numbers_of(element, "limit", joint.limit, ATTRIBUTES["limit"])
         self.numbers_of(element, "dynamics", joint.dynamics, ATTRIBUTES["dynamics"])
         mimic = self.numbers_of(element, "mimic", joint.mimic, ("multiplier", "offset"))
@@ -100,14 +105,14 @@ class _Writer:
         if matrix is None:
             return
         placement = self.array("origin", matrix, (4, 4))
-        R, angles = placement[:3, :3], _angles(placement[:3, :3])
+        R, angles = placement[:3, :3], angles_of(placement[:3, :3])
         off = np.abs(rotation(angles) - R).max()
         if not off <= ROTATION_TOLERANCE or placement[3].tolist() != [0.0, 0.0, 0.0, 1.0]:
             raise self.error(
                 f"its origin {placement.tolist()} is no rotation and translation ({off:.1g} off): "
                 "set a matrix with orthonormal columns"
             )
-        ET.SubElement(parent, "origin", xyz=_written(placement[:3, 3]), rpy=_written(angles))
+        ET.SubElement(parent, "origin", xyz=written(placement[:3, 3]), rpy=written(angles))
 
     def number(self, what: str, value: Any) -> str:
         """A number with all its digits; text (yourdfpy keeps dynamics as text) as it stands."""
@@ -133,20 +138,3 @@ class _Writer:
             if not isinstance(value, str | None):
                 raise self.error(f"its {key} is {value!r}, expected text")
         return {key: value for key, value in values.items() if value is not None}
-
-
-def _written(values: Iterable[float]) -> str:
-    return " ".join(repr(float(value)) for value in values)
-
-
-def _angles(R: NDArray[np.float64]) -> tuple[float, float, float]:
-    """Roll, pitch, yaw with R_z(yaw) R_y(pitch) R_x(roll) = R, accurate at pitch +-pi/2 too.
-
-    Near there roll and yaw are ill-conditioned one by one; yaw is taken from R R_x(roll)^T, so that it makes up for
-    whatever roll came out as.
-    """
-    roll = math.atan2(R[2, 1], R[2, 2])
-    pitch = math.atan2(-R[2, 0], math.hypot(R[2, 1], R[2, 2]))
-    c, s = math.cos(roll), math.sin(roll)
-    yaw = math.atan2(s * R[0, 2] - c * R[0, 1], c * R[1, 1] - s * R[1, 2])
-    return roll, pitch, yaw

@@ -227,7 +227,10 @@ def validate(
         sampling=run.states.sampling,
         seed=seed,
         payload=described(payload),
-        notes=tuple(getattr(program, "note", "") for program in run.programs if getattr(program, "note", "")),
+        notes=(
+            *(note.text for note in robot.model.notes),
+            *(getattr(program, "note", "") for program in run.programs if getattr(program, "note", "")),
+        ),
         seconds=time.perf_counter() - start,
         versions=versions(run.programs),
         failing=run.ranking.failing,

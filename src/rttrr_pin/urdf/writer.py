@@ -1,0 +1,106 @@
+"""A model as the text of a URDF, each number with all the digits of its double.
+
+Rotations are written as angles, which give the matrices back to a few eps. What URDF has no words for stays behind:
+armature, gravity, an axis of less than two limits.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from xml.etree import ElementTree as ET
+
+from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.joint import Joint
+from rttrr_pin.core.joints import CONTINUOUS, JointType
+from rttrr_pin.core.model import Link, Model
+from rttrr_pin.urdf.document import ENTRIES
+from rttrr_pin.urdf.vocabulary import ATTRIBUTES
+
+
+def urdf_text(model: Model) -> str:
+    """The URDF of a model; a floating base, which no URDF has, is left out.
+
+    Args:
+        model: its names must be texts that XML can hold.
+
+    Returns:
+        The text. A revolute joint without a lower and an upper limit is continuous, which moves the same way; where
+        one limit alone is missing it is 0, or the other.
+    """
+    robot = ET.Element("robot", name=model.name)
+    links, joints = (model.root, *model.links), model.joints
+    if model.floating:
+        links, joints = model.links, joints[1:]
+    for link in links:
+        _link(robot, link)
+    for joint, link in zip(joints, links[1:], strict=True):
+        _joint(robot, model, joint, link.name)
+    ET.indent(robot)
+    return ET.tostring(robot, encoding="unicode")
+
+
+def written(values: Iterable[float]) -> str:
+    """Numbers that are read back as the same doubles."""
+    return " ".join(repr(float(value)) for value in values)
+
+
+def angles_of(R: Array) -> tuple[float, float, float]:
+    """Roll, pitch, yaw with R_z(yaw) R_y(pitch) R_x(roll) = R, accurate at pitch +-pi/2 too.
+
+    Near there roll and yaw are ill-conditioned one by one; yaw is taken from R R_x(roll)^T, so that it makes up for
+    whatever roll came out as.
+    """
+    roll = math.atan2(R[2, 1], R[2, 2])
+    pitch = math.atan2(-R[2, 0], math.hypot(R[2, 1], R[2, 2]))
+    c, s = math.cos(roll), math.sin(roll)
+    yaw = math.atan2(s * R[0, 2] - c * R[0, 1], c * R[1, 1] - s * R[1, 2])
+    return roll, pitch, yaw
+
+
+def tensor_words(tensor: Array) -> dict[str, str]:
+    """The six attributes of <inertia>."""
+    return {name: written([tensor[at]]) for name, at in ENTRIES.items()}
+
+
+def _link(robot: ET.Element, link: Link) -> None:
+    element = ET.SubElement(robot, "link", name=link.name)
+    if link.mass == 0.0 and not link.com.any() and not link.inertia.any():
+        return
+    inertial = ET.SubElement(element, "inertial")
+    ET.SubElement(inertial, "origin", xyz=written(link.com), rpy="0 0 0")
+    ET.SubElement(inertial, "mass", value=written([link.mass]))
+    ET.SubElement(inertial, "inertia", tensor_words(link.inertia))
+
+
+def _joint(robot: ET.Element, model: Model, joint: Joint, child: str) -> None:
+    kind, limits = _limits(joint)
+    element = ET.SubElement(robot, "joint", name=joint.name, type=kind.name)
+    ET.SubElement(element, "parent", link=(model.root if joint.parent < 0 else model.links[joint.parent]).name)
+    ET.SubElement(element, "child", link=child)
+    ET.SubElement(element, "origin", xyz=written(joint.p), rpy=written(angles_of(joint.R)))
+    if joint.type.has_axis or joint.type.axis_direction:
+        ET.SubElement(element, "axis", xyz=written(joint.axis))
+    if limits:
+        ET.SubElement(element, "limit", {key: written([value]) for key, value in limits.items()})
+    effects = {key: getattr(joint.effects, key) for key in ATTRIBUTES["dynamics"]}
+    if any(effects.values()):
+        ET.SubElement(element, "dynamics", {key: written([value]) for key, value in effects.items()})
+    if joint.mimic is not None:
+        numbers = {key: written([getattr(joint.mimic, key)]) for key in ("multiplier", "offset")}
+        ET.SubElement(element, "mimic", {"joint": model.joints[joint.mimic.joint].name} | numbers)
+
+
+def _limits(joint: Joint) -> tuple[JointType, dict[str, float]]:
+    """What to call the joint's type, and its <limit>: 0 stands for a largest rate or effort that is not set."""
+    own, kind = joint.limits, joint.type
+    if not kind.has_axis:
+        return kind, {}
+    lower, upper = (end if math.isfinite(end) else None for end in (own.lower, own.upper))
+    if kind.limits == "required" and kind.rotates and lower is upper is None:
+        kind = CONTINUOUS
+    largest = {key: limit if math.isfinite(limit := getattr(own, key)) else 0.0 for key in ("effort", "velocity")}
+    if kind.limits == "none":
+        return kind, largest if any(largest.values()) else {}
+    lower = min(0.0, upper or 0.0) if lower is None else lower
+    return kind, {"lower": lower, "upper": max(0.0, lower) if upper is None else upper} | largest
