@@ -94,17 +94,21 @@ class _Reader:
 
     def read(self) -> Model:
         pin, tree = self.pin, self.tree
-        own = [self._own_frame(j) for j in range(pin.njoints)]
-        tree.root(self.frames[own[0]].name if own[0] is not None else "universe", self._inertial(0))
-        begins = {
-            frame.parentJoint: k for k, frame in reversed([*enumerate(self.frames)]) if frame.type.name == "JOINT"
-        }
-        fixed = [k for k, frame in enumerate(self.frames) if frame.type.name in FRAMES and k not in own]
+        own: dict[int, int] = {}  # by joint, the frame of the body that it moves: the first that is the joint's own
+        begins: dict[int, int] = {}  # by joint, its frame
+        for k, frame in enumerate(self.frames):
+            if frame.type.name == "BODY" and frame.parentJoint not in own and _is_identity(frame.placement):
+                own[frame.parentJoint] = k
+            elif frame.type.name == "JOINT":
+                begins[frame.parentJoint] = k
+        bodies = {j: self.frames[k].name for j, k in own.items()}
+        kept = set(own.values())
+        fixed = [k for k, frame in enumerate(self.frames) if frame.type.name in FRAMES and k not in kept]
+        tree.root(bodies.get(0, "universe"), self._inertial(0))
         for j in range(1, pin.njoints):
-            body = self.frames[own[j]].name if own[j] is not None else self.names[j]
             while fixed and fixed[0] < begins.get(j, 0) and self.frames[fixed[0]].parentJoint in self.links:
                 self._fixed(fixed.pop(0))
-            self._joint(j, body)
+            self._joint(j, bodies.get(j, self.names[j]))
         for k in fixed:
             self._fixed(k)
         self._note_merged()
@@ -112,13 +116,6 @@ class _Reader:
         if np.any(pin.rotorInertia):
             tree.note("rotorInertia is set, which neither Pinocchio's rnea nor tau uses: what counts is armature")
         return tree.model(pin.name, pin.gravity.linear)
-
-    def _own_frame(self, j: int) -> int | None:
-        """The frame of the body that a joint moves: the first at the joint's own."""
-        for k, frame in enumerate(self.frames):
-            if frame.parentJoint == j and frame.type.name == "BODY" and _is_identity(frame.placement):
-                return k
-        return None
 
     def _inertial(self, j: int) -> tuple[float, Array, Array]:
         inertia = self.pin.inertias[j]
@@ -193,7 +190,7 @@ class _Reader:
     def _follower(self, j: int) -> _Part:
         """How a joint that follows another moves: its motion per rate of that one, divided by the multiplier."""
         scaling = self.pin.joints[j].extract().scaling
-        S = np.ravel(self.pin.createData().joints[j].S)
+        S = np.ravel(self.pin.joints[j].createData().S)
         if S.shape != (6,) or not scaling or not S.any() or (S[:3].any() and S[3:].any()):
             raise self.tree.error(
                 f"follows another joint by a motion that is not told (multiplier {scaling}): let it move by itself",

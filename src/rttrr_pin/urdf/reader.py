@@ -39,7 +39,7 @@ def read_urdf(source: AnySource) -> Model:
 
 def _completed(read: Model, own: Model) -> Model:
     """A model that was read from the text of an object, in the object's order, with what the text could not say."""
-    links, joints = ({each.name: each for each in every} for every in (read.links, read.joints))
+    links, joints = {link.name: link for link in read.links}, {joint.name: joint for joint in read.joints}
     completed = []
     for joint in own.joints:
         other = joints[joint.name]
