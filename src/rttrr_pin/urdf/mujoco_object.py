@@ -21,12 +21,11 @@ from typing import Any
 
 import numpy as np
 
-from rttrr_pin.core.algebra import Vector
+from rttrr_pin.core.algebra import Vector, quaternion_rotation, rotation
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joint import JointEffects, Limits, Mimic
 from rttrr_pin.core.joints import CONTINUOUS, FLOATING, PRISMATIC, REVOLUTE
 from rttrr_pin.core.model import Model
-from rttrr_pin.core.rotations import quaternion_rotation, rotation
 from rttrr_pin.core.scalars import FLOAT
 from rttrr_pin.urdf.object_tree import ObjectTree, limit, listed
 
