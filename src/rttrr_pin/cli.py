@@ -6,6 +6,7 @@ Exit codes: 0 agree, 1 disagree, 2 unusable input, 130 interrupted.
 from __future__ import annotations
 
 import sys
+import warnings
 from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
@@ -72,7 +73,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     open_streams()
     words = sys.argv[1:] if arguments is None else list(arguments)
     try:
-        code = _run(words)
+        with warnings.catch_warnings():
+            warnings.showwarning = _warn if not {"-q", "--quiet"} & set(words) else lambda *_, **__: None
+            code = _run(words)
     except ModelMismatchError as error:
         _say(f"DISAGREE: {error}")
         code = DISAGREE
@@ -110,6 +113,11 @@ def _run(words: list[str]) -> int:
         _say(f"error: {error.format_message()}\nsee: {command} --help")
         code = UNUSABLE
     return code if isinstance(code, int) else AGREE
+
+
+def _warn(message: Warning | str, *_: object, **__: object) -> None:
+    """A warning as a sentence, without the line of our own source that gave it."""
+    _say(f"warning: {message}")
 
 
 def _say(message: str) -> None:

@@ -59,9 +59,9 @@ def load(
     field = None if gravity is None else _field(gravity)
     file = mjcf_path(source)
     if file is not None:
-        from rttrr_pin.implementations.mjcf import compiled_mjcf
+        from rttrr_pin.implementations.mjcf import mjcf_source
 
-        source = compiled_mjcf(file)
+        source = mjcf_source(file)
     model = read_urdf(source)
     if field is not None:
         model = model.with_gravity(field)
@@ -72,7 +72,8 @@ def load(
     model = replace(model, notes=tuple(note for note in model.notes if not (friction and note.friction)))
     left_out = [note.text for note in model.notes if note.left_out]
     if left_out:
-        warnings.warn("\n".join(left_out), LoadWarning, stacklevel=2)
+        source = getattr(model.document, "source", model.name)
+        warnings.warn(f"{source}: {'; '.join(left_out)}", LoadWarning, stacklevel=2)
     return Robot(model)
 
 

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
 
 from rttrr_pin.errors import UrdfError, shortened
+from rttrr_pin.urdf.sources import Source, object_source
 
 
-def compiled_mjcf(path: Path) -> Any:
-    """The `mujoco.MjModel` of an MJCF file, with the files that it names.
+def mjcf_source(path: Path) -> Source:
+    """The robot of an MJCF file and the files that it names, as MuJoCo compiles it.
 
     Raises:
         UrdfError: MuJoCo is not installed, or refuses the file.
@@ -25,6 +25,7 @@ def compiled_mjcf(path: Path) -> Any:
 
     try:
         with without_log():
-            return mujoco.MjModel.from_xml_path(str(path))
+            compiled = mujoco.MjModel.from_xml_path(str(path))
     except ValueError as error:
         raise UrdfError(f"MuJoCo refuses the file: {str(error).strip()}", source=source) from error
+    return object_source(compiled, mujoco, "mujoco.MjModel", source)

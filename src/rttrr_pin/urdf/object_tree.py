@@ -50,7 +50,7 @@ class ObjectTree:
 
     def note(self, text: str, left_out: bool = False, friction: bool = False) -> None:
         """Something that the user must know, see `Note`."""
-        self._notes.append(Note(f"{self.source}: {text}", left_out, friction))
+        self._notes.append(Note(text, left_out, friction))
 
     def note_effects(self, why: str, left_out: bool) -> None:
         """What the joints take themselves, and whether tau has it."""
@@ -63,7 +63,7 @@ class ObjectTree:
         del by_effect["armature"]
         if any(by_effect.values()):
             each = "; ".join(f"{key} of {listed(names)}" for key, names in by_effect.items() if names)
-            self.note(f"no part of tau without friction=True: {each}", left_out, friction=True)
+            self.note(f"no part of tau unless asked for (friction=True, --friction): {each}", left_out, friction=True)
 
     def name(self, kind: Literal["link", "joint"], own: str, otherwise: str) -> str:
         """The name of a link or joint: its own, unless that is blank, taken, or no text of XML."""

@@ -129,7 +129,7 @@ def find(source: AnySource) -> Source:
     for library, kind in OBJECTS.items():
         module = sys.modules.get(library)
         if module is not None and isinstance(source, getattr(module, kind)):
-            return _of_object(source, module, f"{library}.{kind}")
+            return object_source(source, module, f"{library}.{kind}")
     if isinstance(source, str):
         return _find_text(source)
     if isinstance(source, os.PathLike) and isinstance(os.fspath(source), str):
@@ -140,22 +140,33 @@ def find(source: AnySource) -> Source:
     )
 
 
-def _of_object(source: Any, module: Any, kind: str) -> Source:
-    """The text that is written from an object."""
-    if kind == "yourdfpy.URDF":
-        from rttrr_pin.urdf import yourdfpy_object
+def object_source(source: Any, module: Any, kind: str, name: str = "") -> Source:
+    """The text that is written from an object.
 
-        name = f"<{kind} {shortened(str(source.robot.name))!r}>"
-        notes = (Note(f"{name}: {yourdfpy_object.UNKNOWN}", left_out=True),)
-        return Source(name, _encoded(yourdfpy_object.as_urdf(source.robot, name), name), written=kind, notes=notes)
-    from rttrr_pin.urdf import mujoco_object, pinocchio_object
+    Args:
+        source: the object.
+        module: its library.
+        kind: its class, one of `OBJECTS`.
+        name: what to call it in messages, if there is a file of it.
+
+    Raises:
+        UrdfError: it is none of our robots.
+    """
+    from rttrr_pin.urdf import mujoco_object, pinocchio_object, yourdfpy_object
     from rttrr_pin.urdf.writer import urdf_text
 
+    def called(own: str) -> str:
+        return name or f"<{kind} {shortened(own)!r}>"
+
+    if kind == "yourdfpy.URDF":
+        name = called(str(source.robot.name))
+        notes = (Note(yourdfpy_object.UNKNOWN, left_out=True),)
+        return Source(name, _encoded(yourdfpy_object.as_urdf(source.robot, name), name), written=kind, notes=notes)
     if kind == "pinocchio.Model":
-        name = f"<{kind} {shortened(source.name)!r}>"
+        name = called(source.name)
         model = pinocchio_object.as_model(source, name)
     else:
-        name = f"<{kind} {shortened(mujoco_object.name_of(source))!r}>"
+        name = called(mujoco_object.name_of(source))
         model = mujoco_object.as_model(source, module, name)
     return Source(name, _encoded(urdf_text(model), name), written=kind, model=model, notes=model.notes)
 

@@ -47,7 +47,7 @@ OTHER_FORMATS = ("gazebo", "transmission", "ros2_control", "sensor", "plugin")
 """Elements whose content is another format's, with links and joints of its own."""
 
 OTHER_ROOTS = {
-    "mujoco": "this is MJCF: pass the path of the file, .xml, to rttrr_pin.load or validate (inspect reads URDF alone)",
+    "mujoco": "this is MJCF, which load, validate, ... take as the path of an .xml file; here a URDF is needed",
     "sdf": "this is SDF, which is not read: convert it to URDF",
 }
 """What other formats begin with, and the way on."""

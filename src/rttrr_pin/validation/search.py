@@ -73,7 +73,8 @@ class WorstCase:
         names = ("subject", "reference", "quantity", "at", "of_tolerance", "random", "evaluations", "seed")
         loads = [{"link": x.link, "f": x.f.reshape(3).tolist(), "n": x.n.reshape(3).tolist()} for x in self.batch.loads]
         state = {name: getattr(self.batch, name)[0].tolist() for name in "qva"} | {"loads": loads}
-        return {"schema": 1, "passed": self.passed, **{name: getattr(self, name) for name in names}, **state}
+        notes = [note.text for note in self.batch.model.notes]
+        return {"schema": 1, "passed": self.passed, **{n: getattr(self, n) for n in names}, **state, "notes": notes}
 
 
 def search_worst_state(

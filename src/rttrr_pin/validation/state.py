@@ -120,6 +120,7 @@ class StateReport:
             "tolerance": TOLERANCE,
             "references": [one.to_dict() for one in self.comparisons],
             "adjudication": adjudication_dict(self.adjudication),
+            "notes": [note.text for note in self.batch.model.notes],
         }
 
 
