@@ -13,7 +13,7 @@ from importlib import import_module
 
 import click
 
-from rttrr_pin.errors import ModelMismatchError, RttrrError
+from rttrr_pin.errors import LoadWarning, ModelMismatchError, RttrrError
 from rttrr_pin.reporting.output import AGREE, DISAGREE, INTERRUPTED, UNUSABLE, discard_stdout, open_streams
 
 COMMANDS = {
@@ -74,7 +74,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     words = sys.argv[1:] if arguments is None else list(arguments)
     try:
         with warnings.catch_warnings():
-            warnings.showwarning = _warn if not {"-q", "--quiet"} & set(words) else lambda *_, **__: None
+            quiet = not {"-q", "--quiet"}.isdisjoint(words)
+            warnings.simplefilter("ignore" if quiet else "always", LoadWarning)  # no error either, whatever -W says
+            warnings.showwarning = _warn
             code = _run(words)
     except ModelMismatchError as error:
         _say(f"DISAGREE: {error}")

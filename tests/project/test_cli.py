@@ -225,3 +225,37 @@ def test_what_is_not_by_default_is_said(capsys: pytest.CaptureFixture[str]) -> N
     assert main(["validate", "--states", "5", "--base", "floating", "--gravity", "0,0,-1.62", "--json", "-"]) == 0
     data = json.loads(capsys.readouterr().out)
     assert (data["base"], data["gravity"]) == ("floating", [0, 0, -1.62])
+
+
+def test_what_an_mjcf_file_has_beyond_a_tree_is_a_warning_and_in_the_report(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("mujoco")
+    path = tmp_path / "arm.xml"
+    path.write_text(
+        '<mujoco model="arm"><option gravity="0 0 -1"/><worldbody><body><joint name="j" axis="0 1 0" stiffness="2" damping="3"/>'
+        '<inertial pos="1 0 0" mass="2" diaginertia="1 1 1"/></body></worldbody></mujoco>'
+    )
+    for command in ("validate --states 20", "state", "search --evaluations 512"):
+        words = shlex.split(f"{command} {path} --subject recursion --friction")
+        assert main([*words, "--json", "-"]) == 0
+        printed = capsys.readouterr()
+        assert printed.err == f"warning: {path}: left out of tau, though MuJoCo's mj_inverse has it: springs\n"
+        assert any("springs" in note for note in json.loads(printed.out)["notes"])
+        assert main([*words, "-q"]) == 0
+        assert capsys.readouterr() == ("", "")
+    main(shlex.split(f"validate {path} --subject recursion --states 5"))
+    printed = capsys.readouterr()
+    assert "gravity [0, 0, -1]" in printed.out.replace("(", "[").replace(")", "]").replace("-1.0", "-1").replace(
+        ".0", ""
+    )
+    assert "--friction): damping of j" in printed.err
+
+
+def test_other_formats_than_urdf_are_refused_by_inspect_with_the_way_on(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for text, message in (("<mujoco/>", "this is MJCF, which load, validate"), ("<sdf/>", "convert it to URDF")):
+        (tmp_path / "robot.xml").write_text(text)
+        assert main(["inspect", str(tmp_path / "robot.xml")]) == 2
+        assert message in capsys.readouterr().err

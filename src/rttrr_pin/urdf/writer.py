@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import asdict
 from xml.etree import ElementTree as ET
 
 from rttrr_pin.core.arrays import Array
@@ -93,14 +94,12 @@ def _joint(robot: ET.Element, model: Model, joint: Joint, child: str) -> None:
 
 def _limits(joint: Joint) -> tuple[JointType, dict[str, float]]:
     """What to call the joint's type, and its <limit>: 0 stands for a largest rate or effort that is not set."""
-    own, kind = joint.limits, joint.type
-    if not kind.has_axis:
-        return kind, {}
-    lower, upper = (end if math.isfinite(end) else None for end in (own.lower, own.upper))
-    if kind.limits == "required" and kind.rotates and lower is upper is None:
+    kind, own = joint.type, asdict(joint.limits)
+    finite = {key: own[key] for key in ATTRIBUTES["limit"] if math.isfinite(own[key])}
+    ends = finite.keys() & {"lower", "upper"}
+    if kind.limits == "required" and kind.rotates and not ends:
         kind = CONTINUOUS
-    largest = {key: limit if math.isfinite(limit := getattr(own, key)) else 0.0 for key in ("effort", "velocity")}
-    if kind.limits == "none":
-        return kind, largest if any(largest.values()) else {}
-    lower = min(0.0, upper or 0.0) if lower is None else lower
-    return kind, {"lower": lower, "upper": max(0.0, lower) if upper is None else upper} | largest
+    if kind.limits == "required":
+        lower = finite.get("lower", min(0.0, finite.get("upper", 0.0)))
+        finite = {"lower": lower, "upper": finite.get("upper", max(0.0, lower))} | finite
+    return kind, finite and {"velocity": 0.0, "effort": 0.0} | finite
