@@ -91,7 +91,7 @@ def _field(gravity: ArrayLike) -> Array:
 
 def _floating(model: Model) -> Model:
     """The robot on a floating base, unless it is an object's that floats already."""
-    library = getattr(model.document, "written", "")
+    library = getattr(model.document, "made_from", "")
     if library and model.joints and all(joint.type == FLOATING for joint in model.joints if joint.parent < 0):
         return model
     if library == "mujoco.MjModel":

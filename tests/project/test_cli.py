@@ -236,7 +236,7 @@ def test_what_an_mjcf_file_has_beyond_a_tree_is_a_warning_and_in_the_report(
         '<mujoco model="arm"><option gravity="0 0 -1"/><worldbody><body><joint name="j" axis="0 1 0" stiffness="2" damping="3"/>'
         '<inertial pos="1 0 0" mass="2" diaginertia="1 1 1"/></body></worldbody></mujoco>'
     )
-    for command in ("validate --states 20", "state", "search --evaluations 512"):
+    for command in ("validate --states 20", "state", "search --evaluations 512", "laws --states 5"):
         words = shlex.split(f"{command} {path} --subject recursion --friction")
         assert main([*words, "--json", "-"]) == 0
         printed = capsys.readouterr()

@@ -226,7 +226,7 @@ def test_what_a_tree_has_not_is_left_out_and_told(what: dict[str, str], message:
 def test_actuators_are_told_without_a_warning() -> None:
     more = '<actuator><motor joint="a" gear="50"/></actuator>'
     robot = rttrr_pin.load(compiled(TWO.format(option="", joint="", body="", more=more)))
-    assert any("1 actuators: tau is what the joints need" in note.text for note in robot.model.notes)
+    assert any("actuators (1): tau is what the joints need" in note.text for note in robot.model.notes)
 
 
 def test_linear_equalities_are_joints_that_follow_others() -> None:

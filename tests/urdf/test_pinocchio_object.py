@@ -195,7 +195,8 @@ def test_fixed_links_are_frames_and_their_inertia_is_in_the_sum() -> None:
     robot, loaded = rttrr_pin.load(text), rttrr_pin.load(of_text(text))
     assert loaded.link_names == robot.link_names
     assert [link.mass > 0 for link in loaded.model.links] == [True, False, True, False]
-    assert any("whose inertia Pinocchio has added" in note.text for note in loaded.model.notes)
+    (note,) = loaded.model.notes
+    assert note.text.startswith("the inertia at joint_2, joint_4 is part of the link that holds it")
     assert same_torques(robot, loaded) <= ROUNDING
 
 
@@ -244,6 +245,11 @@ def test_numbers_that_no_robot_has_are_refused() -> None:
     model.armature = np.arange(6.0)
     with pytest.raises(UrdfError, match="armature .* one number for all its rates"):
         rttrr_pin.load(model)
+    for value in (-1.0, np.nan, np.inf):
+        model = tree_of([pin.JointModelRX()])
+        model.armature = np.array([value])
+        with pytest.raises(UrdfError, match=f"armature is {value}: expected"):
+            rttrr_pin.load(model)
     model = tree_of([pin.JointModelRX()])
     model.lowerPositionLimit, model.upperPositionLimit = np.ones(1), -np.ones(1)
     with pytest.raises(UrdfError, match="above the upper one"):
@@ -267,6 +273,15 @@ def test_one_limit_alone_is_kept() -> None:
         (-1.0, 1.0),
     ]
     assert agrees_with_pinocchio(robot)
+
+
+def test_what_takes_no_part_is_told() -> None:
+    model = tree_of([pin.JointModelRX()])
+    model.rotorInertia = np.ones(1)
+    assert any("what counts is armature" in note.text for note in rttrr_pin.load(model).model.notes)
+    model.gravity.angular = np.ones(3)
+    with pytest.warns(LoadWarning, match="angular part of gravity"):
+        rttrr_pin.load(model)
 
 
 def test_nothing_is_warned_of_where_nothing_is_left_out(recwarn: pytest.WarningsRecorder) -> None:

@@ -104,7 +104,7 @@ def exact_parameters(model: Model, parameters: Literal["read", "text"]) -> Exact
         raise InputError(
             f"robot {model.name!r} was made from numbers and has no file to take them from: pass parameters='doubles'"
         )
-    if document.written and parameters == "text":
+    if document.made_from and parameters == "text":
         raise InputError(
             f"robot {model.name!r} was loaded from an object, which has doubles and no decimals: pass parameters='read'"
         )

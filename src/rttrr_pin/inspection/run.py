@@ -103,7 +103,8 @@ def inspect(
     """Inspect the file behind a robot: its tree and bodies, what is wrong with it, and what other programs do with it.
 
     Args:
-        robot: a robot that was loaded from a file or a text.
+        robot: a robot that was loaded from a file or a text; of one that was loaded from an object, the text that was
+            written from it, `robot.model.urdf`, is inspected.
         folder: where to look for meshes from; None is the folder that the file was read from.
         select: prefixes of the ids of the checks to run (see docs/inspect.md); none means all.
         ignore: prefixes of ids to leave out.

@@ -25,7 +25,8 @@ def show_laws(report: LawReport, console: Console) -> None:
     for row in report.rows:
         table.add_row(row.law.id, Text(row.law.name), *_numbers(row), _verdict(row))
     console.print(table)
-    console.print(Text(LEGEND, "dim"), soft_wrap=True)
+    for line in (*report.notes, LEGEND):
+        console.print(Text(line, "dim"), soft_wrap=True)
     for row in report.violated:
         console.print(Text(f"{row.law.id}: {row.law.statement}"), soft_wrap=True)
     sentence = report.summary().partition(" ")[2]

@@ -78,6 +78,7 @@ class LawReport:
         payload: what the robot carried, in words.
         rows: one for each law, in the order of their ids.
         seconds: wall time.
+        notes: what is to be known of how the robot was read.
     """
 
     robot: str
@@ -89,6 +90,7 @@ class LawReport:
     payload: str
     rows: tuple[LawRow, ...]
     seconds: float
+    notes: tuple[str, ...] = ()
 
     @property
     def passed(self) -> bool:
@@ -115,7 +117,7 @@ class LawReport:
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as data for JSON."""
-        names = ("passed", "robot", "base", "subject", "n_states", "sampling", "seed", "payload", "seconds")
+        names = ("passed", "robot", "base", "subject", "n_states", "sampling", "seed", "payload", "seconds", "notes")
         laws = {row.law.id: row.to_dict() for row in self.rows}
         return {"schema": 1, **{name: getattr(self, name) for name in names}, "laws": laws}
 
@@ -181,6 +183,7 @@ def check_laws(
         payload=described(payload),
         rows=rows,
         seconds=time.perf_counter() - start,
+        notes=tuple(note.text for note in model.notes),
     )
 
 

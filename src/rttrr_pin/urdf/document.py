@@ -199,7 +199,7 @@ class UrdfDocument:
         name: the robot's name.
         links: by name, in the order of the file.
         joints: by name, in the order of the file.
-        written: the class of the object that the text was written from; empty where there is a file.
+        made_from: the class of the object that the text was written from; empty where there is a file.
     """
 
     source: str
@@ -208,7 +208,7 @@ class UrdfDocument:
     name: str
     links: dict[str, UrdfLink]
     joints: dict[str, UrdfJoint]
-    written: str = ""
+    made_from: str = ""
 
     @cached_property
     def carried_by(self) -> dict[str, UrdfJoint]:

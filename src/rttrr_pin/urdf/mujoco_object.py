@@ -223,7 +223,7 @@ class _Reader:
         if followers:
             tree.note(f"equality constraints let {listed(followers)} follow others: exactly, and without coordinates")
         if mj.nu:
-            tree.note(f"{mj.nu} actuators: tau is what the joints need (qfrc_inverse), before gears and gains")
+            tree.note(f"actuators ({mj.nu}): tau is what the joints need (qfrc_inverse), before gears and gains")
         if mj.nmocap:
             moved = [mj.body(b).name for b in range(mj.nbody) if mj.body_mocapid[b] >= 0]
             tree.note(f"mocap bodies stand where the model has them: {listed(moved)}")

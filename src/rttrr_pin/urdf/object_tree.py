@@ -7,7 +7,7 @@ refused by `error`, or noted; names that a URDF cannot hold are replaced, and th
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import asdict, replace
 from typing import Any, Literal
 
 import numpy as np
@@ -126,6 +126,9 @@ class ObjectTree:
         limits = limits or Limits()
         if limits.lower > limits.upper:
             raise self.error(f"lower limit {limits.lower} is above the upper one, {limits.upper}: exchange them", where)
+        for key, value in asdict(effects := effects or JointEffects()).items():
+            if not 0.0 <= value < np.inf:
+                raise self.error(f"its {key} is {value}: expected a finite number that is not negative", where)
         direction = type.axis_direction
         try:
             made = Joint(
@@ -137,7 +140,7 @@ class ObjectTree:
                 axis=axis if direction is None else np.array(direction),
                 limits=limits,
                 mimic=mimic,
-                effects=effects or JointEffects(),
+                effects=effects,
             )
         except InputError as error:
             raise self.error(str(error)) from None

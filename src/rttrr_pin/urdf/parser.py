@@ -52,7 +52,7 @@ def read_document(source: AnySource) -> UrdfDocument:
         name=name,
         links={name: _link(name, link) for name, link in links.items()},
         joints={name: _joint(name, joint) for name, joint in joints.items()},
-        written=file.written,
+        made_from=file.made_from,
     )
     _check_tree(document, robot, joints)
     _check_mimics(document, joints)

@@ -111,10 +111,7 @@ class _Reader:
             self._joint(j, bodies.get(j, self.names[j]))
         for k in fixed:
             self._fixed(k)
-        self._note_merged()
-        tree.note_effects("Pinocchio's rnea", left_out=False)
-        if np.any(pin.rotorInertia):
-            tree.note("rotorInertia is set, which neither Pinocchio's rnea nor tau uses: what counts is armature")
+        self._note_left(kept)
         return tree.model(pin.name, pin.gravity.linear)
 
     def _inertial(self, j: int) -> tuple[float, Array, Array]:
@@ -134,8 +131,7 @@ class _Reader:
         for k, part in enumerate(parts):
             last = k == len(parts) - 1
             joint = f"{name}.{part.label}" if len(parts) > 1 else name
-            if k or part.p.any() or _turned(part.R):
-                R, p = (part.R, part.p) if k else (R @ part.R, p + R @ part.p)
+            R, p = (part.R, part.p) if k else (R @ part.R, p + R @ part.p)
             parent = self.tree.add(
                 joint=self.tree.name("joint", joint, f"joint_{j}"),
                 link=self.tree.name("link", body if last else joint, f"link_{j}"),
@@ -183,8 +179,7 @@ class _Reader:
             R, p = np.array(placement.rotation), np.array(placement.translation)
             for i, part in enumerate(self._parts(joint, name)):
                 label = f"{k}.{part.label}" if part.label else str(k)
-                at = (R @ part.R, p + R @ part.p) if i == 0 and (part.p.any() or _turned(part.R)) else None
-                at = at or ((R, p) if i == 0 else (part.R, part.p))
+                at = (part.R, part.p) if i else (R @ part.R, p + R @ part.p)
                 yield _Part(part.type, part.axis, label, *at, part.q, part.v)
 
     def _follower(self, j: int) -> _Part:
@@ -246,19 +241,25 @@ class _Reader:
             p=np.array(frame.placement.translation),
         )
 
-    def _note_merged(self) -> None:
-        """Fixed links whose inertia is part of another's."""
-        merged = [frame.name for frame in self.frames if frame.inertia.mass or frame.inertia.inertia.any()]
+    def _note_left(self, own: set[int]) -> None:
+        """What is not where a URDF has it, and what takes no part."""
+        pin, tree = self.pin, self.tree
+        merged = [
+            frame.name
+            for k, frame in enumerate(self.frames)
+            if k not in own and (frame.inertia.mass or frame.inertia.inertia.any())
+        ]
         if merged:
-            self.tree.note(
-                f"fixed joints carry {listed(merged)}, whose inertia Pinocchio has added to the link that holds them: "
-                "there F, N, f, n are those of the sum, and theirs are without it"
+            tree.note(
+                f"the inertia at {listed(merged)} is part of the link that holds it, as Pinocchio has added it up: "
+                "F, N, f, n of that link are those of the sum, and links on fixed joints have no mass"
             )
-
-
-def _turned(R: Array) -> bool:
-    return not np.array_equal(R, np.eye(3))
+        tree.note_effects("Pinocchio's rnea", left_out=False)
+        if np.any(pin.rotorInertia):
+            tree.note("rotorInertia is set, which neither Pinocchio's rnea nor tau uses: what counts is armature")
+        if np.any(pin.gravity.angular):
+            tree.note("the angular part of gravity is left out, which Pinocchio's rnea has", left_out=True)
 
 
 def _is_identity(placement: Any) -> bool:
-    return not _turned(np.array(placement.rotation)) and not np.any(placement.translation)
+    return np.array_equal(placement.rotation, np.eye(3)) and not np.any(placement.translation)

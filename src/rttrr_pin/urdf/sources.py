@@ -52,7 +52,7 @@ class Source:
         name: what to call it in messages.
         text: of the file, or written from an object.
         folder: where its file lies, if there is one.
-        written: the class of the object that the text was written from; empty where there is a file.
+        made_from: the class of the object that the text was written from; empty where there is a file.
         model: the object's, with what a URDF has no words for; None where the text says all.
         notes: what a user must know of how it was read.
     """
@@ -60,7 +60,7 @@ class Source:
     name: str
     text: bytes
     folder: Path | None = None
-    written: str = ""
+    made_from: str = ""
     model: Model | None = None
     notes: tuple[Note, ...] = ()
 
@@ -161,14 +161,14 @@ def object_source(source: Any, module: Any, kind: str, name: str = "") -> Source
     if kind == "yourdfpy.URDF":
         name = called(str(source.robot.name))
         notes = (Note(yourdfpy_object.UNKNOWN, left_out=True),)
-        return Source(name, _encoded(yourdfpy_object.as_urdf(source.robot, name), name), written=kind, notes=notes)
+        return Source(name, _encoded(yourdfpy_object.as_urdf(source.robot, name), name), made_from=kind, notes=notes)
     if kind == "pinocchio.Model":
         name = called(source.name)
         model = pinocchio_object.as_model(source, name)
     else:
         name = called(mujoco_object.name_of(source))
         model = mujoco_object.as_model(source, module, name)
-    return Source(name, _encoded(urdf_text(model), name), written=kind, model=model, notes=model.notes)
+    return Source(name, _encoded(urdf_text(model), name), made_from=kind, model=model, notes=model.notes)
 
 
 def mjcf_path(source: Any) -> Path | None:
