@@ -104,13 +104,13 @@ def looks_of(link: UrdfLink, folder: Path | None) -> Looks:
     hulls = {role: _hull(role, cloud) for role, cloud in clouds.items() if cloud}
     everything = [points for cloud in clouds.values() for points in cloud]
     whole = _hull("link", everything) if everything else None
-    volume = volumes["visual"] or volumes["collision"]
+    parts = volumes["visual"] or volumes["collision"]
     approximate = [hull for role, hull in hulls.items() if hull is not None and role not in solids]
     return Looks(
         points=np.concatenate(everything) if everything else np.zeros((0, 3)),
         volume=0.0 if whole is None else whole.body.mass,
         solids=(*solids.values(), *approximate),
-        filled=sum(volume) if all(volume) else 0.0,
+        filled=sum(parts) if all(parts) else 0.0,
         missing=tuple(dict.fromkeys(missing)),
     )
 
