@@ -128,13 +128,13 @@ def ellipsoid_density(mass: float, moments: Array) -> float:
     NaN where no body with thickness has the inertia.
     """
     axes = semi_axes(mass, moments)
-    return mass / (4.0 / 3.0 * np.pi * float(axes.prod())) if axes.all() else np.nan
+    return float(mass / (4.0 / 3.0 * np.pi * axes.prod())) if axes.all() else np.nan
 
 
 def ball_density(mass: float, moments: Array) -> float:
     """Of the homogeneous ball with the largest of the moments [kg/m^3]: flat and thin bodies count as balls."""
     radius = np.sqrt(2.5 * max(moments[-1], 0.0) / mass)
-    return mass / (4.0 / 3.0 * np.pi * radius**3) if radius > 0.0 else np.nan
+    return float(mass / (4.0 / 3.0 * np.pi * np.float64(radius) ** 3)) if radius > 0.0 else np.nan
 
 
 def distance(x: Array, wanted: Array) -> float:
