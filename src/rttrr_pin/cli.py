@@ -14,7 +14,8 @@ from importlib import import_module
 import click
 
 from rttrr_pin.errors import LoadWarning, ModelMismatchError, RttrrError
-from rttrr_pin.reporting.output import AGREE, DISAGREE, INTERRUPTED, UNUSABLE, discard_stdout, open_streams
+from rttrr_pin.reporting.files import written_so_far
+from rttrr_pin.reporting.output import AGREE, DISAGREE, INTERRUPTED, UNUSABLE, discard_stdout, open_streams, shown
 
 COMMANDS = {
     "validate": "rttrr_pin.validation.command:validate",
@@ -95,7 +96,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         _say(f"error: {error.filename or 'standard output'}: {error.strerror}")
         code = UNUSABLE
     if code == INTERRUPTED:
-        _say("interrupted: nothing was written")
+        _say(f"interrupted: {written_so_far()}")
     return code
 
 
@@ -125,4 +126,4 @@ def _warn(message: Warning | str, *_: object, **__: object) -> None:
 def _say(message: str) -> None:
     """A message on stderr, where that takes one."""
     with suppress(OSError):
-        print(message, file=sys.stderr, flush=True)
+        print(shown(message), file=sys.stderr, flush=True)

@@ -134,7 +134,7 @@ def test_what_cannot_be_read_is_unparsed_and_the_rest_is_judged(
 WRONG = {
     "toml": ("[robot]", "[robot", "is no TOML"),
     "key": ("title =", "titel =", "did you mean title?"),
-    "quantity": ('quantity = "tau"', 'quantity = "torque"', "expected vC, F, N, f, n, tau or definition"),
+    "quantity": ('quantity = "tau"', 'quantity = "torque"', "expected vC, F, N, f, n, tau, g, a, M, C or definition"),
     "number": ('number = "tau_1"', "number = 6.10", 'a text such as "6.10"'),
     "joint": ("joint = 2", "joint = 3", "expected 1 to 2"),
     "joint is no number": ("joint = 1", "joint = true", "expected 1 to 2"),

@@ -8,6 +8,7 @@ import pytest
 
 import rttrr_pin
 from rttrr_pin.auditing.evidence import Witness
+from rttrr_pin.auditing.printed import Quotient
 from rttrr_pin.derivation.closed_forms import ClosedForms, closed_forms
 from rttrr_pin.derivation.latex import latex_number, latex_power, latex_product, latex_sum
 from rttrr_pin.derivation.ring import Ring
@@ -91,7 +92,7 @@ def compare(forms: ClosedForms, witness: Witness) -> None:
                 continue
             components = [forms.tau[i]] if quantity == "tau" else list(vectors(forms, quantity)[i])
             for axis, component in zip("xyz" if len(components) == 3 else ("",), components, strict=True):
-                closed = witness.enclosure(ring.terms(component))
+                closed = witness.enclosure(Quotient(ring.terms(component)))
                 recursive = witness.recursion(f"{quantity}{i + 1}{axis}")
                 assert closed.overlaps(recursive), (quantity, i, axis)
                 assert float(closed.rad()) < 1e-50 * max(1.0, abs(float(closed.mid())))
@@ -100,7 +101,7 @@ def compare(forms: ClosedForms, witness: Witness) -> None:
 def test_pinocchio_says_the_same(arm) -> None:
     witness = Witness(arm.robot, 3)
     for i in range(arm.robot.model.nv):
-        here, there = witness.number(arm.robot.ring.terms(arm.tau[i])), witness.pinocchio(f"tau{i + 1}")
+        here, there = witness.number(Quotient(arm.robot.ring.terms(arm.tau[i]))), witness.pinocchio(f"tau{i + 1}")
         assert abs(here - there) <= ROUNDING * max(1.0, abs(there)) * 10
 
 
@@ -109,7 +110,7 @@ def test_a_letter_for_another_is_told_by_the_balls() -> None:
     forms = in_letters("rttrr")
     witness = Witness(forms.robot, 0)
     wrong = renamed(forms.robot.ring.terms(forms.F[4].z), {"r_C5x": "r_C5z"})
-    assert not witness.enclosure(wrong).overlaps(witness.recursion("F5z"))
+    assert not witness.enclosure(Quotient(wrong)).overlaps(witness.recursion("F5z"))
 
 
 def test_the_paper_s_arm_has_as_many_terms_as_the_paper_prints() -> None:

@@ -146,8 +146,8 @@ def serve(seed: int, line: Any, at: Any, stage: Any) -> None:
 class Worker:
     """A process that runs cases, watched from outside: it may die, or never come back."""
 
-    def __init__(self, seed: int) -> None:
-        self.seed, self.indices = seed, []
+    def __init__(self, seed: int, serve: Any) -> None:
+        self.seed, self.indices, self.serve = seed, [], serve
         self.start()
 
     def start(self) -> None:
@@ -155,7 +155,7 @@ class Worker:
         context = multiprocessing.get_context("spawn")
         self.at, self.stage = context.Value("q", -1, lock=False), context.Value("i", LOADING, lock=False)
         self.line, theirs = context.Pipe()
-        self.process = context.Process(target=serve, args=(self.seed, theirs, self.at, self.stage), daemon=True)
+        self.process = context.Process(target=self.serve, args=(self.seed, theirs, self.at, self.stage), daemon=True)
         self.process.start()
         theirs.close()
 
@@ -192,10 +192,10 @@ class Worker:
         return lost
 
 
-def campaign(seed: int, numbers: range, workers: int) -> Iterator[tuple[int, dict[str, Any]]]:
-    """What became of each case; the order is that in which they come back."""
+def campaign(seed: int, numbers: range, workers: int, serve: Any = serve) -> Iterator[tuple[int, dict[str, Any]]]:
+    """What became of each case, by the workers' function; the order is that in which they come back."""
     todo = deque(list(numbers[k : k + CHUNK]) for k in range(0, len(numbers), CHUNK))
-    pool = [Worker(seed) for _ in range(min(workers, len(todo)))]
+    pool = [Worker(seed, serve) for _ in range(min(workers, len(todo)))]
     while todo or any(worker.indices for worker in pool):
         for worker in pool:
             if not worker.indices:

@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from itertools import combinations, pairwise
 
 from rttrr_pin.auditing.match import Matching, Pair
+from rttrr_pin.auditing.reading.grammar import UnreadableError
+from rttrr_pin.auditing.reading.nodes import Atom
+from rttrr_pin.auditing.reading.trees import atom_of
 from rttrr_pin.auditing.results import Finding
 from rttrr_pin.auditing.spelling import Writing
-from rttrr_pin.derivation.symbols import Dimension, Role, Term, dimension_of
+from rttrr_pin.derivation.symbols import Dimension, Role, Symbol, Term, dimension_of
 
 KEYS = {Role.COORDINATE: "position", Role.RATE: "velocity", Role.ACCELERATION: "acceleration"}
 """The keys of [coordinates]."""
+
+DOTTED: Mapping[tuple[str, ...], Role] = {
+    (): Role.COORDINATE,
+    (r"\dot",): Role.RATE,
+    (r"\ddot",): Role.ACCELERATION,
+}
+"""What a letter of a coordinate is with so many dots."""
 
 
 def corrected_terms(matching: Matching) -> list[tuple[Term, bool]]:
@@ -22,10 +32,17 @@ def corrected_terms(matching: Matching) -> list[tuple[Term, bool]]:
     return [(pair.reading.term, False) for pair in matching.pairs if pair.reading is not None]
 
 
-def findings(matching: Matching, name: str, dimension: Dimension, write: Writing) -> tuple[Finding, ...]:
-    """The errors of a component: in printed order, then what is missing; `dimension` is what every term should have."""
+def findings(
+    matching: Matching, name: str, write: Writing, dimensions: Collection[Dimension] = ()
+) -> tuple[Finding, ...]:
+    """The errors of a component: in printed order, then what is missing.
+
+    Every term should have a dimension of `dimensions`, or that of a derived term, which may have numbers for symbols.
+    """
+    symbols = matching.component.symbols
+    known = {*dimensions, *(dimension_of(factors, symbols) for factors in matching.component.derived)}
     hints = _hints(matching.pairs)
-    terms, symbols = matching.component.printed.terms, matching.component.symbols
+    terms = matching.component.printed.terms
     errors = [(pair, kind) for pair in matching.pairs for kind in pair.kinds]
     return tuple(
         Finding(
@@ -33,7 +50,7 @@ def findings(matching: Matching, name: str, dimension: Dimension, write: Writing
             kind=kind,
             printed=None if pair.place is None else terms[pair.place].text,
             derived=None if pair.derived is None else write([pair.derived])[0],
-            dimension_ok=None if pair.reading is None else dimension_of(pair.reading.factors, symbols) == dimension,
+            dimension_ok=None if pair.reading is None else dimension_of(pair.reading.factors, symbols) in known,
             note="; ".join(filter(None, (pair.reading.note if pair.reading else "", hints.get(id(pair), "")))),
         )
         for k, (pair, kind) in enumerate(errors, start=1)
@@ -49,13 +66,40 @@ def undeclared(matching: Matching) -> Iterator[str]:
             candidates = beside.setdefault(spelling, Counter())
             if pair.reading and pair.derived:
                 candidates.update(name for name, _ in pair.derived[1] if name not in dict(pair.reading.factors))
-    for spelling, candidates in beside.items():
-        likely = [symbols[name] for name, _ in candidates.most_common(1)]
-        hint = f" (the derivation has `{likely[0].latex}` there)" if likely else ""
-        where = "in [[symbol]]" if likely else "in [[symbol]], or in [coordinates] if it belongs to one"
-        if likely and likely[0].role in KEYS:
-            where = f"in [coordinates], as the {KEYS[likely[0].role]} of coordinate {likely[0].index}"
-        yield f"`{spelling}` is no declared symbol{hint}: declare it {where}, or correct the text"
+    likely = {x: next((symbols[name] for name, _ in found.most_common(1)), None) for x, found in beside.items()}
+    atoms = {spelling: _atom(spelling) for spelling in likely}
+    moving = {
+        (atom.letters, atom.subscript): symbol.index
+        for spelling, atom in atoms.items()
+        if atom is not None and (symbol := likely[spelling]) is not None and symbol.role in KEYS
+    }
+    for spelling, symbol in likely.items():
+        atom = atoms[spelling]
+        index = moving.get((atom.letters, atom.subscript)) if atom is not None else None
+        if atom is not None and index is not None and atom.accents in DOTTED:  # what moves does so with its dots
+            same = next((x for x in symbols.values() if x.role is DOTTED[atom.accents] and x.index == index), None)
+            yield to_declare(spelling, same)
+        else:
+            yield to_declare(spelling, symbol)
+
+
+def _atom(spelling: str) -> Atom | None:
+    try:
+        return atom_of(spelling)
+    except UnreadableError:  # of Python
+        return None
+
+
+def to_declare(spelling: str, likely: Symbol | None = None) -> str:
+    """What to declare for a spelling that no symbol has, and what the derivation is likely to have in its place."""
+    hint = f" (the derivation has `{likely.latex}` there)" if likely else ""
+    where = "in [[symbol]]" if likely else "in [[symbol]], or in [coordinates] if it belongs to one"
+    if likely and likely.role in KEYS:
+        where = f"in [coordinates], as the {KEYS[likely.role]} of coordinate {likely.index}"
+    return (
+        f"`{spelling}` is no declared symbol{hint}: declare it {where}; if it stands for others, add the equation that "
+        'says so, with quantity = "definition"; or correct the text'
+    )
 
 
 def _hints(pairs: Sequence[Pair]) -> dict[int, str]:

@@ -56,9 +56,10 @@ def audit(
         publication = _only(publication, equation)
     with progress(len(publication.equations), quiet, "equations") as advance:
         result = run_audit(publication, seed, advance)
+    texts = {form: errata(result, form) for form, where in sheets.items() if where is not None}
     write_json(json, result.to_dict)
-    for form, where in sheets.items():
-        write_text(where, partial(errata, result, form))
+    for form, text in texts.items():  # all are ready before the first is written
+        write_text(sheets[form], partial(str, text))
     console = Output(quiet=quiet or "-" in targets.values(), soft_wrap=False, highlight=False)
     if equation:
         show_equations(result, console)
@@ -78,6 +79,8 @@ def _only(publication: Publication, numbers: Sequence[str]) -> Publication:
         if number not in known:
             raise InputError(f"there is no equation ({number}): there are {_ranges(known)}")
     chosen = tuple(equation for equation in publication.equations if str(equation.number) in wanted)
+    if any(equation.quantity == "C" for equation in chosen):  # its rows are judged as a whole
+        chosen = tuple(x for x in publication.equations if x in chosen or x.quantity == "C")
     return replace(publication, equations=chosen)
 
 

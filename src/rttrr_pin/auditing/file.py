@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from fractions import Fraction
 from os import PathLike
 from pathlib import Path
 
 from rttrr_pin.auditing.publication import DEFINITION, Convention, Equation, Publication
 from rttrr_pin.core.model import Model
 from rttrr_pin.derivation.symbol_file import PUBLISHED, SYMBOL_KEYS, read_symbols, spell
+from rttrr_pin.derivation.symbolic_robot import Slot, SymbolicRobot, value_of_slot
 from rttrr_pin.derivation.tables import Table, read_table
 from rttrr_pin.derivation.templates import filled
 from rttrr_pin.errors import InputError
@@ -20,16 +23,22 @@ FILE_KEYS = (
     *("title", "source", "language", "symbols", "equations", *SYMBOL_KEYS),
     *("coordinates", "equation", "convention"),
 )
-EQUATION_KEYS = ("number", "line", "quantity", "link", "joint", "components", "latex", "python")
+EQUATION_KEYS = ("number", "line", "quantity", "link", "joint", "row", "column", "components", "latex", "python")
 
-VECTORS, SCALARS = ("vC", "F", "N", "f", "n"), ("tau",)
-"""Quantities of a link, and of a joint."""
+VECTORS, SCALARS, MATRICES = ("vC", "F", "N", "f", "n"), ("tau", "g", "a"), ("M", "C")
+"""Quantities of a link, of a joint, and of two."""
 
-COORDINATES: Mapping[str, tuple[str, str, str]] = {
-    "latex": ("q_<k>", r"\dot{q}_<k>", r"\ddot{q}_<k>"),
-    "python": ("q<k>", "qd<k>", "qdd<k>"),
+COORDINATES: Mapping[str, tuple[str, str, str, str]] = {
+    "latex": ("q_<k>", r"\dot{q}_<k>", r"\ddot{q}_<k>", r"\tau_<k>"),
+    "python": ("q<k>", "qd<k>", "qdd<k>", "tau<k>"),
 }
-"""How coordinates, rates and accelerations are spelled unless [coordinates] says otherwise."""
+"""How coordinates, rates, accelerations and forces are spelled unless [coordinates] says otherwise."""
+
+NO_FORCE = "0"
+"""Instead of a spelling: nothing drives this joint."""
+
+MOST_EQUATIONS = 1000
+"""In one file."""
 
 
 def read_publication(path: str | PathLike[str] = RTTRR) -> Publication:
@@ -50,16 +59,19 @@ def read_publication(path: str | PathLike[str] = RTTRR) -> Publication:
     latex = language == "latex"
     symbols = read_symbols(*_symbol_file(file, path), latex)
     spellings = dict(symbols.spellings)
-    _spell_motion(spellings, file, symbols.robot.model, language)
+    passive = _spell_motion(spellings, file, symbols.robot.model, language)
+    equations = tuple(_equations(file, path, symbols.robot.model, language))
     publication = Publication(
         title=file.get("title", str, path.stem),
         source=file.get("source", str, path.name),
         language=language,
-        robot=symbols.robot,
+        robot=_with_decimals(symbols.robot),
         spellings=spellings,
         aliases=symbols.aliases,
-        equations=tuple(_equations(file, path, symbols.robot.model, language)),
+        equations=equations,
         conventions=tuple(_conventions(file, set(spellings.values()))),
+        passive=passive,
+        definitions=tuple(text for x in equations if x.quantity == DEFINITION for text in x.texts),
     )
     try:
         if latex:
@@ -85,12 +97,31 @@ def _symbol_file(file: Table, path: Path) -> tuple[Table, Path]:
     return read_table(target).only(FILE_KEYS), target
 
 
-def _spell_motion(spellings: dict[str, str], file: Table, model: Model, language: str) -> None:
-    """Add the spellings of coordinates, rates and accelerations: by a template with <k>, or one for each."""
-    keys = ("position", "velocity", "acceleration")
+def _with_decimals(robot: SymbolicRobot) -> SymbolicRobot:
+    """The robot whose numbers without a symbol are what their decimals say: a text has 9.81, not the nearest double."""
+    model, slots = robot.model, dict(robot.parameters.slots)
+    axes = range(3)
+    every: list[Slot] = [("gravity", x) for x in axes]
+    for i in range(len(model.links)):
+        every += [("mass", i), *(("com", i, x) for x in axes), *(("origin", i, x) for x in axes)]
+        every += [("inertia", i, x, y) for x in axes for y in axes]
+    for slot in every:
+        if slot not in slots and (value := value_of_slot(model, slot)):
+            slots[slot] = {(): Fraction(repr(value))}
+    return replace(robot, parameters=replace(robot.parameters, slots=slots))
+
+
+def _spell_motion(spellings: dict[str, str], file: Table, model: Model, language: str) -> tuple[int, ...]:
+    """Add the spellings of coordinates, rates, accelerations and forces: by a template with <k>, or one for each.
+
+    Returns:
+        The joints that nothing drives.
+    """
+    keys = ("position", "velocity", "acceleration", "force")
     table = file.table("coordinates").only(keys)
-    counts = (model.nq, model.nv, model.nv)
-    for key, letter, usual, count in zip(keys, "qva", COORDINATES[language], counts, strict=True):
+    counts = (model.nq, model.nv, model.nv, model.nv)
+    passive: tuple[int, ...] = ()
+    for key, letter, usual, count in zip(keys, ("q", "v", "a", "tau"), COORDINATES[language], counts, strict=True):
         texts = table.texts(key, default=[usual])
         templates = [text for text in texts if "<k>" in text]
         single = [text for text in texts if "<k>" not in text]
@@ -101,7 +132,14 @@ def _spell_motion(spellings: dict[str, str], file: Table, model: Model, language
             )
         for k in range(1, count + 1):
             general = [filled(text, {"k": str(k)}, latex=language == "latex") for text in templates]
-            spell(spellings, [*single[k - 1 : k], *general], f"{letter}_{k}", table)
+            printed = [*single[k - 1 : k], *general]
+            if key == "force" and NO_FORCE in printed:
+                passive = (*passive, k - 1)
+            elif key != "force" or key in table.entries:
+                spell(spellings, printed, f"{letter}_{k}", table)
+            else:  # usual letters of forces, unless they are symbols of the robot
+                spellings |= {text: f"{letter}_{k}" for text in printed if text not in spellings}
+    return passive
 
 
 def _equations(file: Table, path: Path, model: Model, language: str) -> list[Equation]:
@@ -112,6 +150,8 @@ def _equations(file: Table, path: Path, model: Model, language: str) -> list[Equ
         tables += read_table(path.parent / separate).only(("equation",)).tables("equation", "equation")
     if not tables:
         raise file.error("holds no [[equation]]: add one for each equation")
+    if len(tables) > MOST_EQUATIONS:
+        raise file.error(f"has {len(tables)} equations, expected {MOST_EQUATIONS} at most: divide it into files")
     equations = [_equation(table, model, language) for table in tables]
     names: dict[str, int | str] = {}
     for table, equation in zip(tables, equations, strict=True):
@@ -136,12 +176,29 @@ def _equation(table: Table, model: Model, language: str) -> Equation:
         axes = table.get("components", str, "xyz")
         if not axes or any(axis not in "xyz" for axis in axes) or len(set(axes)) < len(axes):
             raise table.error(f"components is {axes!r}: expected xyz, or some of them")
-        if len(texts) not in (1, len(axes)):
-            raise table.error(f"has {len(texts)} texts for {len(axes)} components: give one for each, or one in all")
+        _one_text_each(table, texts, len(axes), language)
         return Equation(number, quantity, _place(table, "link", model.link_names), axes, texts, line)
-    if quantity in SCALARS:
+    if quantity in SCALARS and "joint" in table.entries:
+        _one_text_each(table, texts, 1, language)
         return Equation(number, quantity, _place(table, "joint", model.v_names), "", texts, line)
-    raise table.error(f"quantity is {quantity!r}: expected {', '.join((*VECTORS, *SCALARS))} or {DEFINITION}")
+    every = tuple(range(model.nv))
+    if quantity in SCALARS:
+        _one_text_each(table, texts, model.nv, language)
+        return Equation(number, quantity, -1, "", texts, line, places=every)
+    if quantity in MATRICES:
+        rows, columns = (
+            (_place(table, key, model.v_names),) if key in table.entries else every for key in ("row", "column")
+        )
+        _one_text_each(table, texts, len(rows) * len(columns), language)
+        return Equation(number, quantity, -1, "", texts, line, places=rows, columns=columns)
+    known = ", ".join((*VECTORS, *SCALARS, *MATRICES))
+    raise table.error(f"quantity is {quantity!r}: expected {known} or {DEFINITION}")
+
+
+def _one_text_each(table: Table, texts: Sequence[str], count: int, language: str) -> None:
+    if len(texts) != count and (language != "latex" or len(texts) != 1):
+        in_all = ", or one in all" if language == "latex" else ""
+        raise table.error(f"has {len(texts)} texts for {count} components: give one for each{in_all}")
 
 
 def _place(table: Table, key: str, names: Sequence[str]) -> int:

@@ -73,6 +73,10 @@ class Matching:
         """The printed sum, by the readings that were taken."""
         return expression_of(pair.reading.term for pair in self.pairs if pair.reading)
 
+    def as_right(self) -> Matching:
+        """The same with nothing wrong, where it is equal to what is derived in another way."""
+        return replace(self, pairs=[replace(x, kinds=(), weight=0.0) for x in self.pairs if x.place is not None])
+
 
 def match_best(
     printed: PrintedComponent, name: str, derived: Sequence[Derived], aliases: Mapping[str, str]
@@ -89,10 +93,8 @@ def match_best(
     best = min(ways, key=lambda way: way.weight)
     if printed.unparsed or not any(pair.kinds for pair in best.pairs):
         return best
-    if not equal(best.printed, derived[0].expressions[name], best.component.symbols, aliases):
-        return best
-    right = [replace(pair, kinds=(), weight=0.0) for pair in best.pairs if pair.place is not None]
-    return replace(best, pairs=right)
+    right = equal(best.printed, derived[0].expressions[name], best.component.symbols, aliases)
+    return best.as_right() if right else best
 
 
 def match(component: Normalised, aliases: Mapping[str, str]) -> Matching:
@@ -192,12 +194,13 @@ def _candidates(
 def _distances(printed: Sequence[Factors], derived: Sequence[Factors]) -> Counts:
     """How many factors differ, for each pair of products."""
     products = [*printed, *derived]
-    columns = {name: k for k, name in enumerate(dict.fromkeys(name for factors in products for name, _ in factors))}
-    powers = np.zeros((len(products), len(columns)), dtype=np.int64)
+    columns: dict[str, Counts] = {}
     for row, factors in enumerate(products):
         for name, power in factors:
-            powers[row, columns[name]] = power
-    distances: Counts = np.abs(powers[: len(printed), None] - powers[len(printed) :]).sum(axis=2)
+            columns.setdefault(name, np.zeros(len(products), dtype=np.int64))[row] = power
+    distances: Counts = np.zeros((len(printed), len(derived)), dtype=np.int64)
+    for powers in columns.values():  # column by column: all at once would take memory for each pair and symbol
+        distances += np.abs(powers[: len(printed), None] - powers[len(printed) :])
     return distances
 
 

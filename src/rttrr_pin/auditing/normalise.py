@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Mapping, MutableMapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, MutableMapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 from rttrr_pin.auditing.derived import Derived
 from rttrr_pin.auditing.printed import PrintedComponent, PrintedTerm
-from rttrr_pin.derivation.ring import Ring
+from rttrr_pin.auditing.reading.vocabulary import PART
+from rttrr_pin.derivation.ring import Polynomial, Ring
 from rttrr_pin.derivation.symbols import Expression, Factors, Role, Symbol, factors_of, renamed
+
+HALF = Fraction(1, 2)
 
 
 @dataclass(frozen=True)
@@ -32,17 +35,23 @@ class Normalised:
 def normalise(printed: PrintedComponent, name: str, derived: Derived) -> Normalised:
     """Bring a derived component, by its name such as F5z, into the form of the printed one."""
     symbols = with_printed_symbols(derived.symbols, printed.terms)
-    form = folded(derived.expressions[name], sums_of_angles(symbols))
+    products = {factors for term in printed.terms for factors in (term.literal[1],)}
+    form = folded(derived.expressions[name], sums_of_angles(symbols), products)
     angles = [name.removeprefix("c_") for name, symbol in symbols.items() if symbol.role is Role.COSINE]
     return Normalised(printed, in_printed_form(form, printed.terms, angles), symbols)
 
 
 def with_printed_symbols(known: Mapping[str, Symbol], terms: Iterable[PrintedTerm]) -> Mapping[str, Symbol]:
     """The symbols with the sums of angles and the unknown symbols of printed terms."""
-    names = dict.fromkeys(name for term in terms for x in term.readings for name, _ in x.factors if name not in known)
+    return with_names(known, (name for term in terms for x in term.readings for name, _ in x.factors))
+
+
+def with_names(known: Mapping[str, Symbol], used: Iterable[str]) -> Mapping[str, Symbol]:
+    """The symbols with those of other names: sums of angles, and unknown ones."""
+    names = dict.fromkeys(name for name in used if name not in known)
     symbols = dict(known)
     for angle in sums_of_angles(names):
-        subscript = angle.replace("_", "" if all(len(index) == 1 for index in angle.split("_")) else ",")
+        subscript = _subscript(angle.split("_"))
         for letter, role in (("s", Role.SINE), ("c", Role.COSINE)):
             symbols[f"{letter}_{angle}"] = Symbol(f"{letter}_{angle}", f"{letter}_{{{subscript}}}", role)
     for name in names:
@@ -50,24 +59,65 @@ def with_printed_symbols(known: Mapping[str, Symbol], terms: Iterable[PrintedTer
     return symbols
 
 
+def _subscript(parts: Sequence[str]) -> str:
+    """An angle as the index of c or s: 12, {1,12}, 1-2, 1+1."""
+    if any(part.startswith("m") for part in parts) or len(set(parts)) < len(parts):
+        return "+".join(parts).replace("+m", "-")
+    return ("" if all(len(index) == 1 for index in parts) else ",").join(parts)
+
+
 def sums_of_angles(names: Iterable[str]) -> list[str]:
     """The sums of angles among names of sines and cosines, such as `1_2` of `c_1_2`, and those that make them up."""
     needed: set[str] = set()
     for name in names:
         parts = name[2:].split("_")
-        if name[:2] in ("c_", "s_") and all(part.isdigit() for part in parts):
+        if name[:2] in ("c_", "s_") and all(map(PART.fullmatch, parts)):
             needed |= {"_".join(parts[:k]) for k in range(2, len(parts) + 1)}
     return sorted(needed, key=lambda angle: (angle.count("_"), angle))
 
 
-def folded(terms: Expression, angles: Iterable[str]) -> Expression:
-    """The same sum with c_1 c_2 - s_1 s_2 written c_12, and s_1 c_2 + c_1 s_2 written s_12."""
+def folded(terms: Expression, angles: Iterable[str], printed: Collection[Factors] = ()) -> Expression:
+    """The same sum with c_1 c_2 - s_1 s_2 written c_12, and s_1 c_2 + c_1 s_2 written s_12, where it can be.
+
+    A product of two is written as half a sum, as c_1^2 = (1 + c_11) / 2, where `printed` has all that it takes.
+    """
     result = dict(terms)
     for angle in angles:
-        first, last = angle.rsplit("_", 1)
-        _fold(result, (f"c_{first}", f"c_{last}"), (f"s_{first}", f"s_{last}"), -1, f"c_{angle}")
-        _fold(result, (f"s_{first}", f"c_{last}"), (f"c_{first}", f"s_{last}"), 1, f"s_{angle}")
+        first, last, sign = _last(angle)
+        if first == last and sign > 0:
+            _rewrite(result, (f"c_{first}", f"c_{first}"), {(): HALF, (f"c_{angle}",): HALF}, printed)
+        if sign < 0:
+            s, c, s_minus, c_minus = f"s_{first}_{last}", f"c_{first}_{last}", f"s_{angle}", f"c_{angle}"
+            _rewrite(result, (f"s_{first}", f"c_{last}"), {(s,): HALF, (s_minus,): HALF}, printed)
+            _rewrite(result, (f"c_{first}", f"s_{last}"), {(s,): HALF, (s_minus,): -HALF}, printed)
+            _rewrite(result, (f"c_{first}", f"c_{last}"), {(c,): HALF, (c_minus,): HALF}, printed)
+            _rewrite(result, (f"s_{first}", f"s_{last}"), {(c,): -HALF, (c_minus,): HALF}, printed)
+        _fold(result, (f"c_{first}", f"c_{last}"), (f"s_{first}", f"s_{last}"), -sign, f"c_{angle}")
+        _fold(result, (f"s_{first}", f"c_{last}"), (f"c_{first}", f"s_{last}"), sign, f"s_{angle}")
     return result
+
+
+def _last(angle: str) -> tuple[str, str, int]:
+    """What an angle is the sum of: all but the last part, the last part, and its sign."""
+    first, last = angle.rsplit("_", 1)
+    return first, last.removeprefix("m"), -1 if last.startswith("m") else 1
+
+
+def _rewrite(
+    terms: Expression, old: Sequence[str], new: Mapping[tuple[str, ...], Fraction], printed: Collection[Factors]
+) -> None:
+    """Two factors as a sum of other products, wherever all these, with what else there is, are printed."""
+    for factors in list(terms):
+        cofactor = _exchanged(factors, old, ())
+        if cofactor is None:
+            continue
+        products = {factors_of(Counter(dict(cofactor)) + Counter(names)): x for names, x in new.items()}
+        if all(product in printed for product in products if product != cofactor):
+            coefficient = terms.pop(factors)
+            for product, x in products.items():
+                total = terms.pop(product, Fraction(0)) + coefficient * x
+                if total:
+                    terms[product] = total
 
 
 def _fold(terms: Expression, one: tuple[str, str], other: tuple[str, str], sign: int, name: str) -> None:
@@ -78,7 +128,10 @@ def _fold(terms: Expression, one: tuple[str, str], other: tuple[str, str], sign:
             continue
         sum_factors = _exchanged(factors, one, (name,)) or ()
         coefficient = terms.pop(factors)
-        del terms[partner]
+        if partner == factors:  # s c + c s
+            coefficient /= 2
+        else:
+            del terms[partner]
         terms[sum_factors] = terms.get(sum_factors, Fraction(0)) + coefficient
 
 
@@ -138,8 +191,9 @@ def in_printed_form(derived: Expression, printed: Iterable[PrintedTerm], angles:
 def add_sums(values: MutableMapping[str, Any], angles: Sequence[str]) -> None:
     """Add sines and cosines of sums of angles, such as `s_1_2`, to those of the angles, in any kind of scalar."""
     for angle in angles:
-        first, last = angle.rsplit("_", 1)
+        first, last, sign = _last(angle)
         s, c, s_last, c_last = (values[f"{name}_{part}"] for part in (first, last) for name in "sc")
+        s_last = s_last * sign
         values[f"s_{angle}"], values[f"c_{angle}"] = s * c_last + c * s_last, c * c_last - s * s_last
 
 
@@ -147,6 +201,11 @@ def equal(printed: Expression, derived: Expression, symbols: Mapping[str, Symbol
     """Whether two sums are equal modulo c^2 + s^2 = 1, sums of angles of the printed one expanded, aliases made one."""
     ring = Ring(symbols.values())
     difference = ring.polynomial(renamed(printed, aliases)) - ring.polynomial(derived)
-    values: dict[str, Any] = {name: ring[name] for name in symbols}
-    add_sums(values, sums_of_angles(symbols))
-    return not len(ring.substituted(difference, values))
+    return not len(with_expanded_angles(ring, difference))
+
+
+def with_expanded_angles(ring: Ring, x: Polynomial) -> Polynomial:
+    """A polynomial without sines and cosines of sums of angles, reduced."""
+    values: dict[str, Any] = {name: ring[name] for name in ring.symbols}
+    add_sums(values, sums_of_angles(ring.symbols))
+    return ring.substituted(x, values)

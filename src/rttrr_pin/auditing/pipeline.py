@@ -5,19 +5,28 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from rttrr_pin.auditing.classify import corrected_terms, findings, undeclared
+from rttrr_pin.auditing.classify import corrected_terms, findings, to_declare, undeclared
+from rttrr_pin.auditing.coriolis import other_matrices
 from rttrr_pin.auditing.derived import Derived, derive
 from rttrr_pin.auditing.evidence import Witness
 from rttrr_pin.auditing.match import Matching, match_best
-from rttrr_pin.auditing.printed import Split
-from rttrr_pin.auditing.prove import prove
+from rttrr_pin.auditing.printed import PrintedComponent, Split
+from rttrr_pin.auditing.prove import prove, prove_quotient
 from rttrr_pin.auditing.publication import Convention, Equation, Publication
+from rttrr_pin.auditing.quotients import as_quotient, compare
 from rttrr_pin.auditing.read import read
 from rttrr_pin.auditing.results import AuditResult, ComponentAudit, ConventionCheck, Verdict
-from rttrr_pin.derivation.symbols import ACCELERATION, FORCE, MOMENT, Dimension
+from rttrr_pin.derivation.symbols import ACCELERATION, FORCE, INERTIA, MASS, MOMENT, Dimension
 
-UNITS: Mapping[Dimension, str] = {ACCELERATION: "m/s^2", FORCE: "N", MOMENT: "N m"}
-"""The unit of each quantity."""
+UNITS: Mapping[Dimension, str] = {
+    ACCELERATION: "m/s^2",
+    FORCE: "N",
+    MOMENT: "N m",
+    INERTIA: "kg m^2",
+    MASS: "kg",
+    Dimension(time=-2): "rad/s^2",
+}
+"""Units that are not the product of those of length, mass and time."""
 
 
 def audit(publication: Publication, seed: int = 0, progress: Callable[[int], None] = lambda done: None) -> AuditResult:
@@ -34,17 +43,41 @@ def audit(publication: Publication, seed: int = 0, progress: Callable[[int], Non
     Raises:
         OracleError: Pinocchio cannot take the robot.
     """
-    derived, witness = derive(publication), Witness(publication.robot, seed)
+    derived, witness = derive(publication), Witness(publication.robot, seed, publication.passive)
     printed = {equation: read(publication, equation) for equation in publication.equations if equation.names}
+    divided = {equation: splits for equation, splits in printed.items() if _divides(equation, splits)}
+    paired = {
+        equation: match_equation(equation, splits, derived, publication.aliases)
+        for equation, splits in printed.items()
+        if equation not in divided
+    }
+    by_name = {
+        name: matching
+        for equation, (matchings, _) in paired.items()
+        for name, matching in zip(equation.names, matchings, strict=True)
+    }
+    others, open_ = other_matrices(by_name, derived[0], publication.robot.model.nv, publication.aliases)
     components: list[ComponentAudit] = []
     for done, equation in enumerate(publication.equations, start=1):
-        if equation.names:
-            matchings, note = match_equation(equation, printed[equation], derived, publication.aliases)
-            for name, matching in zip(equation.names, matchings, strict=True):
-                components.append(_component(publication, equation, name, note, matching, derived[0], witness))
+        if equation in divided:
+            for name, component in zip(equation.names, divided[equation][0].components, strict=True):
+                components.append(_quotient(publication, equation, name, component, derived[0], witness))
+        elif equation.names:
+            for name in equation.names:
+                matching, note = by_name[name], paired[equation][1]
+                if name in others:
+                    matching, note = matching.as_right(), "; ".join(filter(None, (note, others[name])))
+                reason = open_.get(name, "")
+                components.append(_component(publication, equation, name, note, matching, derived[0], witness, reason))
         progress(done)
-    checks = [_check(convention, publication, printed, derived, components) for convention in publication.conventions]
+    plain = {equation: splits for equation, splits in printed.items() if equation not in divided}
+    checks = [_check(convention, publication, plain, derived, components) for convention in publication.conventions]
     return AuditResult(publication, tuple(components), tuple(checks), seed)
+
+
+def _divides(equation: Equation, splits: Sequence[Split]) -> bool:
+    """Whether an equation is about quotients."""
+    return equation.quantity == "a" or any(component.quotient for component in splits[0].components)
 
 
 def match_equation(
@@ -74,10 +107,14 @@ def _component(
     matching: Matching,
     derived: Derived,
     witness: Witness,
+    reason: str,
 ) -> ComponentAudit:
-    """The result for one component: no findings where it could not be read, or has symbols that may be right."""
-    component, dimension = matching.component, publication.dimension(equation)
-    to_declare = tuple(undeclared(matching))
+    """The result for one component: no findings where it could not be read, or has symbols that may be right.
+
+    `reason` says why nothing can be said of it yet; empty for most.
+    """
+    component, dimension = matching.component, publication.dimension(name)
+    needed = (*undeclared(matching), *([reason] if reason else []))
     notes = (pair.reading.note for pair in matching.pairs if pair.reading and not pair.kinds)
     result = ComponentAudit(
         equation=equation.number,
@@ -85,23 +122,60 @@ def _component(
         line=equation.line,
         printed_terms=len(component.printed.terms),
         derived_terms=len(component.derived),
-        verdict=Verdict.UNDECLARED if to_declare else Verdict.UNPARSED,
-        unit=UNITS[dimension],
+        verdict=Verdict.UNDECLARED if needed else Verdict.UNPARSED,
+        unit=UNITS.get(dimension) or str(dimension),
         notes=tuple(filter(None, (note, *notes))),
         unparsed=component.printed.unparsed,
-        undeclared=to_declare,
+        undeclared=needed,
     )
-    if to_declare or component.printed.unparsed:
+    if needed or component.printed.unparsed:
         return result
     corrected = corrected_terms(matching)
     proof = prove(matching, [term for term, _ in corrected], name, derived, publication, witness)
-    errors = findings(matching, name, dimension, proof.write)
+    errors = findings(matching, name, proof.write, [dimension])
     changed = [changed for _, changed in corrected] or [True]  # a sum of nothing is printed as 0
     return replace(
         result,
         verdict=Verdict.DIFFERS if errors else Verdict.MATCH,
         findings=errors,
         corrected=tuple(zip(proof.corrected, changed, strict=True)),
+        proven=proof.proven,
+        evidence=proof.evidence,
+    )
+
+
+def _quotient(
+    publication: Publication,
+    equation: Equation,
+    name: str,
+    component: PrintedComponent,
+    derived: Derived,
+    witness: Witness,
+) -> ComponentAudit:
+    """The result for one component in which symbols divide."""
+    printed, dimension = as_quotient(component), publication.dimension(name)
+    result = ComponentAudit(
+        equation=equation.number,
+        quantity=name,
+        line=equation.line,
+        printed_terms=0 if component.unparsed else len(printed.numerator) + len(printed.denominator),
+        derived_terms=0,
+        verdict=Verdict.UNDECLARED if printed.unknown else Verdict.UNPARSED,
+        unit=UNITS.get(dimension) or str(dimension),
+        unparsed=component.unparsed,
+        undeclared=tuple(map(to_declare, printed.unknown)),
+    )
+    if printed.unknown or component.unparsed:
+        return result
+    comparison = compare(printed, name, derived, publication.aliases)
+    proof = prove_quotient(comparison, component.text, name, derived, publication, witness)
+    errors = () if comparison.right else comparison.findings(name, proof.write)
+    return replace(
+        result,
+        derived_terms=len(comparison.derived.numerator) + len(comparison.derived.denominator),
+        verdict=Verdict.MATCH if comparison.right else Verdict.DIFFERS,
+        findings=errors,
+        corrected=tuple((text, not comparison.right) for text in proof.corrected),
         proven=proof.proven,
         evidence=proof.evidence,
     )

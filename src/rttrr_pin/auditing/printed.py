@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 
-from rttrr_pin.derivation.symbols import Factors, Term, renamed_factors
+from rttrr_pin.derivation.symbols import Expression, Factors, Term, renamed_factors
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,19 +54,43 @@ class PrintedTerm:
         return replace(self, readings=tuple(readings))
 
 
+ONE: Expression = {(): Fraction(1)}
+
+
+@dataclass(frozen=True, slots=True)
+class Quotient:
+    """A quotient of two sums.
+
+    Attributes:
+        numerator, denominator: polynomials; s^2 stays s^2. Without a denominator it is a sum.
+        unknown: spellings that the table of symbols does not have, as printed.
+    """
+
+    numerator: Expression
+    denominator: Expression = field(default_factory=lambda: dict(ONE))
+    unknown: tuple[str, ...] = ()
+
+    @property
+    def names(self) -> set[str]:
+        """Of all symbols."""
+        return {name for x in (self.numerator, self.denominator) for factors in x for name, _ in factors}
+
+
 @dataclass(frozen=True, slots=True)
 class PrintedComponent:
     """The right-hand side for one component.
 
     Attributes:
         text: as printed.
-        terms: its terms in printed order; empty where it could not be read.
+        terms: its terms in printed order; empty where it could not be read, and where it is a quotient.
         unparsed: why it could not be read, with the place; empty where it could.
+        quotient: where symbols divide.
     """
 
     text: str
     terms: tuple[PrintedTerm, ...]
     unparsed: str = ""
+    quotient: Quotient | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -9,7 +9,9 @@ from rttrr_pin.auditing.derived import Derived
 from rttrr_pin.auditing.evidence import Evidence, Witness
 from rttrr_pin.auditing.match import Matching
 from rttrr_pin.auditing.normalise import equal, with_printed_symbols
+from rttrr_pin.auditing.printed import Quotient
 from rttrr_pin.auditing.publication import Publication
+from rttrr_pin.auditing.quotients import Comparison, as_quotient, compare, written
 from rttrr_pin.auditing.read import read_component
 from rttrr_pin.auditing.spelling import Writing, writing
 from rttrr_pin.derivation.symbols import Term, expression_of, renamed
@@ -44,8 +46,22 @@ def prove(
         proven = _proven(" ".join(texts), name, derived, publication)
         if proven:
             break
-    printed, corrected = renamed(matching.printed, aliases), renamed(expression_of(terms), aliases)
+    printed, corrected = (Quotient(renamed(x, aliases)) for x in (matching.printed, expression_of(terms)))
     return Proof(write, texts, proven, witness.evidence(name, printed, corrected))
+
+
+def prove_quotient(
+    comparison: Comparison, text: str, name: str, derived: Derived, publication: Publication, witness: Witness
+) -> Proof:
+    """The same for a quotient: what is right in its place, read again."""
+    texts_of_all = (text for equation in publication.equations for text in equation.texts)
+    write = writing(publication, comparison.symbols, (text, *texts_of_all))
+    quotient = comparison.printed if comparison.right else comparison.derived
+    corrected = written(quotient, write, publication.language == "latex")
+    component = read_component(publication, corrected)
+    proven = not component.unparsed and compare(as_quotient(component), name, derived, publication.aliases).right
+    evidence = witness.evidence(name, comparison.printed, comparison.derived)
+    return Proof(write, (corrected,), proven, evidence)
 
 
 def _proven(text: str, name: str, derived: Derived, publication: Publication) -> bool:

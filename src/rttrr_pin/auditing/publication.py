@@ -5,15 +5,21 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
+from rttrr_pin.auditing.reading.abbreviations import collected, defined_in_latex
+from rttrr_pin.auditing.reading.nodes import Atom, Group
+from rttrr_pin.auditing.reading.python import defined_in_python
 from rttrr_pin.auditing.reading.vocabulary import Vocabulary
 from rttrr_pin.derivation.symbolic_robot import SymbolicRobot
-from rttrr_pin.derivation.symbols import ACCELERATION, FORCE, MOMENT, Dimension
+from rttrr_pin.derivation.symbols import ACCELERATION, FORCE, LENGTH, MOMENT, Dimension, Role
 
 DEFINITION = "definition"
 """The quantity of an equation that only defines symbols."""
+
+NAME = re.compile(r"([A-Za-z]+?)(\d+)(?:([xyz])|,(\d+))?")
+"""Of a component."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,11 +28,13 @@ class Equation:
 
     Attributes:
         number: as printed.
-        quantity: vC, F, N, f, n, tau; or "definition".
-        place: index of the link, or of the joint for tau; -1 for a definition.
+        quantity: vC, F, N, f, n, tau, M, C, g, a; or "definition".
+        place: index of the link, or of the joint; -1 for a definition, and where there are several.
         components: which axes, such as "xyz" or "z"; empty for a scalar.
         texts: the text as printed, whole, or one for each component.
         line: where it starts in the published text; 0 where that is not known.
+        places: indices where it states more than one; else empty.
+        columns: of an equation about entries of a matrix, indices of their columns; else empty.
     """
 
     number: int | str
@@ -35,20 +43,31 @@ class Equation:
     components: str
     texts: tuple[str, ...]
     line: int = 0
+    places: tuple[int, ...] = ()
+    columns: tuple[int, ...] = ()
 
     @property
     def names(self) -> list[str]:
-        """Its components as reports name them: F5z, tau2."""
+        """Its components as reports name them: F5z, tau2, M1,2."""
         if self.quantity == DEFINITION:
             return []
-        return [f"{self.quantity}{self.place + 1}{axis}" for axis in self.components or ("",)]
+        endings = [f",{column + 1}" for column in self.columns] or self.components or ("",)
+        return [f"{self.quantity}{place + 1}{end}" for place in self.places or (self.place,) for end in endings]
+
+
+def parts_of(name: str) -> tuple[str, int, str]:
+    """Quantity, index and what follows it, of a component's name: ("F", 4, "z"), ("M", 0, "2")."""
+    quantity, number, axis, column = NAME.fullmatch(name).groups(default="")  # type: ignore[union-attr]
+    return quantity, int(number) - 1, axis or column
 
 
 def component_of(name: str, quantities: Mapping[str, Any]) -> Any:
     """One component by its name, such as F5z or tau2, of quantities that have a value for each link or joint."""
-    quantity, number, axis = re.fullmatch(r"([A-Za-z]+?)(\d+)([xyz]?)", name).groups()  # type: ignore[union-attr]
-    value = quantities[quantity][int(number) - 1]
-    return tuple(value)["xyz".index(axis)] if axis else value
+    quantity, place, end = parts_of(name)
+    value = quantities[quantity][place]
+    if end.isdecimal():
+        return value[int(end) - 1]
+    return tuple(value)["xyz".index(end)] if end else value
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,6 +100,8 @@ class Publication:
         aliases: symbols that are kept apart from one that they are equal to, as J_yx is from J_xy.
         equations: as printed, in order.
         conventions: what the text leaves to the reader.
+        passive: the joints that nothing drives, by index: their force is 0.
+        definitions: the texts of equations that only define symbols.
     """
 
     title: str
@@ -91,15 +112,48 @@ class Publication:
     aliases: Mapping[str, str]
     equations: tuple[Equation, ...]
     conventions: tuple[Convention, ...]
+    passive: tuple[int, ...] = ()
+    definitions: tuple[str, ...] = ()
 
     @cached_property
     def vocabulary(self) -> Vocabulary:
         """The spellings as the LaTeX reader looks them up."""
         return Vocabulary(self.spellings)
 
-    def dimension(self, equation: Equation) -> Dimension:
-        """The dimension that every term of an equation should have."""
-        if equation.quantity == "tau":
-            rotations = [rotation for joint in self.robot.model.moving for rotation in joint.type.rotations]
-            return MOMENT if rotations[equation.place] else FORCE
-        return {"vC": ACCELERATION, "F": FORCE, "f": FORCE, "N": MOMENT, "n": MOMENT}[equation.quantity]
+    @cached_property
+    def latex_abbreviations(self) -> Mapping[Atom, Group]:
+        """What symbols stand for that only its definitions explain."""
+        define = partial(defined_in_latex, vocabulary=self.vocabulary)
+        return collected(self.definitions, define) if self.language == "latex" else {}
+
+    @cached_property
+    def python_abbreviations(self) -> Mapping[str, Group]:
+        """The same for variables."""
+        define = partial(defined_in_python, names=self.spellings)
+        return collected(self.definitions, define) if self.language == "python" else {}
+
+    @cached_property
+    def gravity(self) -> Mapping[str, str]:
+        """How each symbol of gravity is spelled, by name."""
+        named = [symbol.name for symbol in self.robot.parameters.symbols if symbol.role is Role.GRAVITY]
+        spelled = {name: text for text, name in reversed(list(self.spellings.items()))}
+        return {name: spelled[name] for name in named if name in spelled}
+
+    def dimension(self, name: str) -> Dimension:
+        """The dimension that every term of a component should have."""
+        quantity, place, end = parts_of(name)
+        fixed = {"vC": ACCELERATION, "F": FORCE, "f": FORCE, "N": MOMENT, "n": MOMENT}
+        if quantity in fixed:
+            return fixed[quantity]
+        rotations = [rotation for joint in self.robot.model.moving for rotation in joint.type.rotations]
+        force, acceleration, rate = MOMENT, Dimension(time=-2), Dimension(time=-1)
+        if not rotations[place]:
+            force, acceleration = FORCE, ACCELERATION
+        if quantity in ("tau", "g"):
+            return force
+        if quantity == "a":
+            return acceleration
+        times = rate if quantity == "C" else Dimension(time=-2)
+        if not rotations[int(end) - 1]:
+            times = times.times(LENGTH)
+        return force.times(times, -1)

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from functools import lru_cache
 
 from rttrr_pin.auditing.publication import Publication
 from rttrr_pin.derivation.latex import in_order, latex_sum
+from rttrr_pin.derivation.numbers import fits
 from rttrr_pin.derivation.symbols import Role, Symbol, Term
 
 Writing = Callable[[Sequence[Term]], list[str]]
@@ -20,7 +23,7 @@ r"""A sine or cosine by name, and whether a bracket follows: \cos\theta_1, \cos(
 
 ONE, SEVERAL = (
     re.compile(rf"(\\mathrm\s*\{{\s*|(?<![A-Za-z\\{{_]))([csCS])(\s*\}}|){POWER}\s*_\s*{index}")
-    for index in (r"(?:\d|\{\s*\d\s*\})", r"\{\s*\d[\d,+\s]*\d\s*\}")
+    for index in (r"(?:\d|\{\s*\d\s*\})", r"\{\s*\d[\d,+\s-]*\d\s*\}")
 )
 """A sine or cosine whose angle is an index, of one angle, s_2, and of a sum, s_{12}."""
 
@@ -39,7 +42,8 @@ def writing(publication: Publication, symbols: Mapping[str, Symbol], examples: S
     spelled = {}
     for name, symbol in symbols.items():
         text = preferred.get(name, symbol.latex)
-        angle = [preferred.get(f"q_{k}", "") for k in name[2:].split("_")]
+        parts = name[2:].split("_")
+        angle = [preferred.get(f"q_{k.removeprefix('m')}", "") for k in parts]
         if symbol.role in (Role.COSINE, Role.SINE) and all(angle):
             function = _python_function if publication.language == "python" else _latex_function
             text = function(symbol, angle, examples)
@@ -51,7 +55,9 @@ def writing(publication: Publication, symbols: Mapping[str, Symbol], examples: S
 def _latex_function(symbol: Symbol, angle: Sequence[str], examples: Sequence[str]) -> str:
     """A sine or cosine of an angle or of a sum of angles, in the manner of the first example."""
     several = len(angle) > 1
-    summed, word = " + ".join(angle), "cos" if symbol.role is Role.COSINE else "sin"
+    summed, word = _summed(symbol, angle, " "), "cos" if symbol.role is Role.COSINE else "sin"
+    if len(set(angle)) < len(angle):  # 2 q_1 has no index
+        return rf"\{word}({summed})"
     example = next(filter(None, (_example(text, several) for text in examples)), None)
     if example is None:
         return symbol.latex if several else f"{symbol.name[0]}{summed}"
@@ -75,14 +81,29 @@ def _example(text: str, several: bool) -> re.Match[str] | None:
 
 def _python_function(symbol: Symbol, angle: Sequence[str], examples: Sequence[str]) -> str:
     word = "cos" if symbol.role is Role.COSINE else "sin"
+    summed = _summed(symbol, angle, "*")
     example = next(filter(None, map(MODULE.search, examples)), None)
-    return f"{example[1]}.{word}({' + '.join(angle)})" if example and example[1] else f"{word}({' + '.join(angle)})"
+    return f"{example[1]}.{word}({summed})" if example and example[1] else f"{word}({summed})"
+
+
+def _summed(symbol: Symbol, angle: Sequence[str], times: str) -> str:
+    """The angle of a sine or cosine, in the letters of its parts: 2 q_1 - q_2."""
+    signs = [-1 if part.startswith("m") else 1 for part in symbol.name[2:].split("_")]
+    multiples: Counter[str] = Counter()
+    for letter, sign in zip(angle, signs, strict=True):
+        multiples[letter] += sign
+    terms = [(n, letter if abs(n) == 1 else f"{abs(n)}{times}{letter}") for letter, n in multiples.items()]
+    return " ".join(f"{'-' if n < 0 else '+'} {text}" for n, text in terms).removeprefix("+ ")
+
+
+def _python_number(x: Fraction) -> str:
+    return str(x) if fits(x) else repr(float(x))
 
 
 def _python_sum(terms: Sequence[Term], symbols: Mapping[str, Symbol]) -> list[str]:
     texts = []
     for coefficient, factors in terms:
         parts = [symbols[name].latex + (f"**{n}" if n > 1 else "") for name, n in in_order(factors, symbols)]
-        number = [str(abs(coefficient))] if abs(coefficient) != 1 or not parts else []
+        number = [_python_number(abs(coefficient))] if abs(coefficient) != 1 or not parts else []
         texts.append(("- " if coefficient < 0 else "+ ") + "*".join([*number, *parts]))
     return [texts[0].removeprefix("+ "), *texts[1:]] if texts else ["0"]

@@ -71,8 +71,8 @@ class ClosedForms:
     @cached_property
     def g(self) -> list[Polynomial]:
         """What holds the robot still, (nv,)."""
-        moving: dict[str | int, int] = dict.fromkeys(self.robot.ring.names(*MOVING), 0)
-        return [x.subs(moving) for x in self.tau]
+        ring = self.robot.ring
+        return [ring.without(x, ring.names(*MOVING)) for x in self.tau]
 
 
 MOVING = (Role.RATE, Role.ACCELERATION, Role.PAYLOAD, Role.SIGN)

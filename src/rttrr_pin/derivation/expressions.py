@@ -5,15 +5,14 @@ from __future__ import annotations
 import ast
 import operator
 from collections.abc import Callable, Collection, Mapping
-from decimal import Decimal
-from fractions import Fraction
 
-from rttrr_pin.derivation.ring import Polynomial, Ring
+from rttrr_pin.derivation.numbers import MOST_BITS, exact_number
+from rttrr_pin.derivation.ring import Polynomial, Ring, bits
 from rttrr_pin.derivation.symbols import Expression, Role, Symbol
-from rttrr_pin.errors import InputError
+from rttrr_pin.errors import InputError, shortened
 
-MOST_TERMS, LARGEST_POWER = 1000, 40
-"""Terms of one expression, and a power in it: a number of a robot needs fewer."""
+MOST_TERMS, LARGEST_POWER, LARGEST_DEGREE = 1000, 40, 200
+"""Terms of one expression, a power in it, and powers of all symbols: a number of a robot needs fewer."""
 
 
 def read_expression(text: str, names: Collection[str]) -> Expression:
@@ -32,17 +31,21 @@ def read_expression(text: str, names: Collection[str]) -> Expression:
     except InputError:  # a ValueError, and says more
         raise
     except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        raise InputError(f"{text!r} cannot be read: expected a sum of products of symbols and numbers") from error
+        raise InputError(
+            f"{shortened(text)!r} cannot be read: expected a sum of products of symbols and numbers"
+        ) from error
 
 
 def _read(node: ast.expr, text: str, ring: Ring) -> Polynomial:
     match node:
         case ast.Name(id=name):
             if name not in ring:
-                raise InputError(f"{text!r} has {name!r}, which is no symbol: declare it in [[symbol]]")
+                raise InputError(
+                    f"{shortened(text)!r} has {shortened(name)!r}, which is no symbol: declare it in [[symbol]]"
+                )
             return ring[name]
         case ast.Constant(value=int() | float()) if not isinstance(node.value, bool):
-            return ring.lift(Fraction(Decimal(ast.get_source_segment(text, node) or "")))
+            return ring.lift(exact_number(ast.get_source_segment(text, node) or ""))
         case ast.UnaryOp(op=ast.USub() | ast.UAdd() as sign, operand=operand):
             x = _read(operand, text, ring)
             return -x if isinstance(sign, ast.USub) else x
@@ -59,6 +62,8 @@ def _read(node: ast.expr, text: str, ring: Ring) -> Polynomial:
 def _product(x: Polynomial, y: Polynomial) -> Polynomial:
     if len(x) * len(y) > MOST_TERMS:
         raise ValueError("too many terms")
+    if sum(x.degrees()) + sum(y.degrees()) > LARGEST_DEGREE or bits(x) + bits(y) > MOST_BITS:
+        raise ValueError("too large a power or number")
     return x * y
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
-from fractions import Fraction
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
@@ -14,6 +13,7 @@ from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints import JOINT_TYPES
 from rttrr_pin.core.model import STANDARD_GRAVITY, Link, Model
 from rttrr_pin.core.solids import rotation
+from rttrr_pin.derivation.numbers import exact_number
 from rttrr_pin.derivation.symbolic_robot import AXES, Slot
 from rttrr_pin.derivation.tables import Table
 
@@ -92,8 +92,9 @@ def _angles(link: Table) -> tuple[float, ...]:
     angles = []
     for text in link.texts("rpy_degrees", 3, ("0", "0", "0")):
         try:
-            angles.append(math.radians(float(Fraction(text))))
-        except (ValueError, ZeroDivisionError) as error:
+            numerator, _, denominator = text.partition("/")
+            angles.append(math.radians(float(exact_number(numerator) / exact_number(denominator or "1"))))
+        except (ArithmeticError, ValueError) as error:
             raise link.error(f"rpy_degrees has {text!r}: expected a number of degrees") from error
     return tuple(angles)
 

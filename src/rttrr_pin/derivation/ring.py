@@ -29,7 +29,7 @@ class Ring:
         self.symbols: dict[str, Symbol] = {symbol.name: symbol for symbol in symbols}
         # sines first: the leading term of s^2 + c^2 - 1 is then s^2, and division by it replaces s^2 by 1 - c^2
         self._names = sorted(self.symbols, key=lambda name: self.symbols[name].role is not Role.SINE)
-        self._context = fmpq_mpoly_ctx.get(tuple(self._names) or ("one",), Ordering.lex)
+        self._context = fmpq_mpoly_ctx.get(tuple(map(_ascii, self._names)) or ("one",), Ordering.lex)
         self._generators = dict(zip(self._names, self._context.gens(), strict=False))
         self._circles = [
             (i, self[name] ** 2 + self[cosine] ** 2 - 1)
@@ -97,12 +97,27 @@ class Ring:
 
     def derivative(self, x: Scalar, name: str) -> Polynomial:
         """The partial derivative by a symbol; a sine or cosine counts as a symbol of its own."""
-        return self.lift(x).derivative(name)
+        return self.lift(x).derivative(_ascii(name))
+
+    def without(self, x: Scalar, names: Iterable[str]) -> Polynomial:
+        """The polynomial with 0 for some symbols."""
+        zeros: dict[str | int, int] = {_ascii(name): 0 for name in names}
+        return self.lift(x).subs(zeros)
 
     def substituted(self, x: Any, values: Mapping[str, Any]) -> Polynomial:
         """The polynomial with others in place of some symbols."""
         images = [self.lift(values[name]) if name in values else self[name] for name in self._names]
         return self.reduced(self.lift(x).compose(*images, ctx=self._context))
+
+
+def _ascii(name: str) -> str:
+    """A name as FLINT takes it."""
+    return name.encode("ascii", "backslashreplace").decode()
+
+
+def bits(x: Polynomial) -> int:
+    """Of the longest numerator or denominator among the coefficients."""
+    return max((int(n).bit_length() for c in x.coeffs() for n in (c.p, c.q)), default=0)
 
 
 def exact(value: float) -> fmpq:

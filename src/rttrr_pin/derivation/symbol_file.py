@@ -21,7 +21,7 @@ from rttrr_pin.derivation.symbolic_robot import (
 )
 from rttrr_pin.derivation.symbols import INERTIA, LENGTH, MASS, Dimension, Expression, Symbol, dimension_of
 from rttrr_pin.derivation.tables import Table, read_table
-from rttrr_pin.derivation.templates import Declaration, declarations
+from rttrr_pin.derivation.templates import MOST_SYMBOLS, Declaration, declarations
 from rttrr_pin.errors import InputError, RttrrError
 from rttrr_pin.loading import load
 
@@ -37,6 +37,9 @@ PLACES: Mapping[str, Sequence[tuple[int, ...]]] = {
     "inertia": ENTRIES,
 }
 """The numbers of a link, by their axes."""
+
+MOST_LINKS = 50
+"""Of a table of frames."""
 
 LINK_KEYS = ("name", "parent", "joint", "origin", "rpy_degrees", "mass", "com", "inertia")
 
@@ -91,6 +94,8 @@ def read_symbols(file: Table, path: Path, latex: bool, model: Model | None = Non
     """
     about = file.table("robot").only(ROBOT_KEYS)
     links = file.tables("link", "[[link]]")
+    if len(links) > MOST_LINKS:
+        raise file.error(f"has {len(links)} tables [[link]], expected {MOST_LINKS} at most: closed forms are for arms")
     declared, spellings = _declared(file, sum("mass" in link.entries for link in links), latex)
     aliases = {name: one.equal for name, one in declared.items() if one.equal}
     wrong = [equal for equal in aliases.values() if equal not in declared or equal in aliases]
@@ -121,7 +126,10 @@ def read_symbols(file: Table, path: Path, latex: bool, model: Model | None = Non
     roles = {name: SLOTS[slot[0]].role for slot, x in slots.items() for factors in x for name, _ in factors}
     idle = [symbol.name for symbol in symbols if symbol.name not in roles]
     if idle:
-        raise file.error(f"symbol {idle[0]!r} stands for no number: use it in [robot], [[link]] or [payload]")
+        raise file.error(
+            f"symbol {idle[0]!r} stands for no number: use it in [robot], [[link]] or [payload]; "
+            "what stands for other symbols is defined by an equation"
+        )
     chosen = tuple(replace(symbol, role=roles[symbol.name]) for symbol in symbols)
     parameters = ParameterSymbols(chosen, slots, {symbol.name: values.get(symbol.name, 0.0) for symbol in chosen})
     preface = " ".join(file.get("preface", str, "").split())
@@ -146,6 +154,8 @@ def _declared(file: Table, links: int, latex: bool) -> tuple[dict[str, Declarati
             if name in declared:
                 raise table.error(f"symbol {name!r} is declared twice: leave one")
             declared[name] = one
+            if len(declared) > MOST_SYMBOLS:
+                raise file.error(f"declares more than {MOST_SYMBOLS} symbols: leave those of the equations")
             spell(spellings, one.spellings, name, table)
     return declared, spellings
 

@@ -3,15 +3,23 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
+from itertools import chain, islice
 from pathlib import Path
 from typing import Any, TypeVar
 
-from rttrr_pin.errors import EquationError
+from rttrr_pin.errors import EquationError, InputError, shortened
+from rttrr_pin.reporting.files import read_limited
 
 Value = TypeVar("Value")
+
+LARGEST_FILE = 2**19
+"""Bytes: the longest paper so far has 70,000; YAML takes a second for this."""
+
+MOST_ENTRIES, DEEPEST = 100_000, 20
+"""Values in a file, each counted as often as it is referred to, and tables and lists within each other."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,9 +49,9 @@ class Table:
         names = list(known)
         for key in self.entries:
             if key not in names:
-                close = get_close_matches(str(key), names, n=1)
+                close = get_close_matches(str(key)[:80], names, n=1)
                 hint = f"did you mean {close[0]}?" if close else f"there are {', '.join(names)}"
-                raise self.error(f"has the key {key!r}, which means nothing here: {hint}")
+                raise self.error(f"has the key {shown(key)}, which means nothing here: {hint}")
         return self
 
     def get(self, key: str, expected: type[Value], default: Value | None = None) -> Value:
@@ -60,7 +68,7 @@ class Table:
         if expected is float and isinstance(value, int) and not isinstance(value, bool):
             value = float(value)
         if not isinstance(value, expected) or (isinstance(value, bool) and expected is not bool):
-            raise self.error(f"{key} is {value!r}: expected {_WORDS[expected]}")
+            raise self.error(f"{key} is {shown(value)}: expected {_WORDS[expected]}")
         return value
 
     def texts(self, key: str, count: int | None = None, default: Sequence[str] | None = None) -> list[str]:
@@ -75,10 +83,10 @@ class Table:
         entries = value if isinstance(value, list) else [value]
         if any(isinstance(x, bool) or not isinstance(x, str | int | float) for x in entries):
             raise self.error(
-                f"{key} is {value!r}: expected a list of texts" if key in self.entries else f"lacks {key!r}"
+                f"{key} is {shown(value)}: expected a list of texts" if key in self.entries else f"lacks {key!r}"
             )
         if count is not None and len(entries) != count:
-            raise self.error(f"{key} has {len(entries)} entries, expected {count}: {value!r}")
+            raise self.error(f"{key} has {len(entries)} entries, expected {count}: {shown(value)}")
         return [x if isinstance(x, str) else repr(x) for x in entries]
 
     def table(self, key: str) -> Table:
@@ -90,8 +98,8 @@ class Table:
         tables = []
         for k, entries in enumerate(self.get(key, list, []), start=1):
             if not isinstance(entries, dict):
-                raise self.error(f"entry {k} of {key} is {entries!r}: expected a table, [[{key}]]")
-            number = entries.get("number", k)
+                raise self.error(f"entry {k} of {key} is {shown(entries)}: expected a table, [[{key}]]")
+            number = shortened(str(entries.get("number", k)))
             tables.append(Table(self.source, f"{place or key} {number}", entries))
         return tables
 
@@ -106,23 +114,62 @@ _WORDS: Mapping[type, str] = {
 }
 
 
+def shown(value: object) -> str:
+    """A value as a message can show it."""
+    return shortened(repr(value))
+
+
 def read_table(path: Path) -> Table:
     """A file of equations, TOML or YAML by its ending.
 
     Raises:
-        EquationError: there is no such file, or it is neither.
+        EquationError: there is no such file, or it is neither, or larger or deeper than any file of equations.
     """
     source = path.name
     try:
-        text = path.read_text(encoding="utf-8")
+        text = read_limited(path, LARGEST_FILE).decode("utf-8-sig")
     except UnicodeDecodeError as error:
         raise EquationError(f"is not UTF-8 text (byte {error.start}): save it as UTF-8", source=source) from error
-    except OSError as error:
-        raise EquationError(f"cannot be read: {error.strerror}", source=str(path)) from error
-    entries = _yaml(text, source) if path.suffix in (".yaml", ".yml") else _toml(text, source)
+    except InputError as error:
+        raise EquationError(f"cannot be read: {error}", source=source) from error
+    except (OSError, ValueError) as error:  # a path with a null byte has no strerror
+        reason = getattr(error, "strerror", None) or error
+        raise EquationError(f"cannot be read: {reason}", source=shortened(str(path))) from error
+    try:
+        entries = _yaml(text, source) if path.suffix in (".yaml", ".yml") else _toml(text, source)
+    except RecursionError as error:
+        raise EquationError("nests tables and lists too deeply: write it flat", source=source) from error
     if not isinstance(entries, dict):
         raise EquationError("holds no table: expected [robot], [[link]], [[symbol]], [[equation]]", source=source)
+    _check_size(entries, source)
     return Table(source, "", entries)
+
+
+def _check_size(entries: dict[Any, Any], source: str) -> None:
+    """Level by level, without recursion: a YAML alias may hold its own table, or a billion others.
+
+    Raises:
+        EquationError: there are too many entries, too deep ones, or numbers that Python cannot print.
+    """
+    level: list[Any] = [entries]
+    left = MOST_ENTRIES
+    for _ in range(DEEPEST):
+        level = list(islice(chain.from_iterable(map(_within, level)), left + 1))
+        left -= len(level)
+        if left < 0:
+            raise EquationError(f"has more than {MOST_ENTRIES:,} entries: leave the equations", source=source)
+        if any(isinstance(value, int) and value.bit_length() > 64 for value in level):
+            raise EquationError("has a whole number of more than 64 bits: no quantity has", source=source)
+        if not level:
+            return
+    raise EquationError(f"has tables and lists in each other, more than {DEEPEST} deep: write it flat", source=source)
+
+
+def _within(value: Any) -> Iterator[Any]:
+    """Keys and values of a table, or entries of a list."""
+    if isinstance(value, dict):
+        return chain(value.keys(), value.values())
+    return iter(value if isinstance(value, list | tuple | set) else ())
 
 
 def _toml(text: str, source: str) -> Any:
@@ -130,12 +177,26 @@ def _toml(text: str, source: str) -> Any:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise EquationError(f"is no TOML: {error}; LaTeX goes between ''' and '''", source=source) from error
+    except ValueError as error:  # a number of more digits than Python converts, a date that there is not
+        raise EquationError(f"is no TOML that can be used: {error}", source=source) from error
 
 
 def _yaml(text: str, source: str) -> Any:
     import yaml
 
+    def no_merge(node: Any) -> None:  # merged tables can double at each step
+        if any(key.tag == "tag:yaml.org,2002:merge" for key, _ in node.value):
+            raise EquationError("has a merge key (<<): write the entries out", source=source)
+
     try:
-        return yaml.safe_load(text)
+        loader = getattr(yaml, "CSafeLoader", yaml.SafeLoader)(text)
+        loader.flatten_mapping = no_merge
+        try:
+            return loader.get_single_data()
+        finally:
+            loader.dispose()
     except yaml.YAMLError as error:
         raise EquationError(f"is no YAML: {error}", source=source) from error
+    except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError) as error:
+        # a number of too many digits, a date that there is not, `!!int x`: PyYAML raises what its converters raise
+        raise EquationError(f"is no YAML that can be used: {error}", source=source) from error

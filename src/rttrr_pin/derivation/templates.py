@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
+from math import prod
 
 from rttrr_pin.derivation.symbolic_robot import AXES
 from rttrr_pin.derivation.symbols import DIMENSIONS, Role, Symbol
@@ -13,7 +14,10 @@ from rttrr_pin.derivation.tables import Table
 
 PAIRS = ("xy", "xz", "yz")
 
-RESERVED = re.compile(r"(q|v|a|s|c|sign)_j?\d+(_\d+)*")
+LONGEST_TEXT, MOST_SYMBOLS = 200, 2000
+"""Characters of a name or spelling, and symbols that one entry may stand for."""
+
+RESERVED = re.compile(r"(q|v|a|s|c|sign|tau)_j?\d+(_m?\d+)*")
 """Names that symbols of motion have."""
 
 KEYS = ("name", "latex", "dimension", "equal", "i", "k")
@@ -43,6 +47,8 @@ def declarations(table: Table, links: int, latex: bool) -> Iterator[Declaration]
     table.only(KEYS)
     name = table.get("name", str)
     spellings = table.texts("latex", default=[name])
+    if any(len(text) > LONGEST_TEXT for text in (name, *spellings)):
+        raise table.error(f"has a text of more than {LONGEST_TEXT} characters: no symbol is printed so")
     dimension = table.get("dimension", str)
     if dimension not in DIMENSIONS:
         raise table.error(f"dimension is {dimension!r}: expected {', '.join(DIMENSIONS)}")
@@ -69,6 +75,8 @@ def _combinations(table: Table, texts: Sequence[str], links: int) -> Iterator[di
         "xy": PAIRS,
     }
     used = [key for key in ranges if any(f"<{key}>" in text or f"<{key[::-1]}>" in text for text in texts)]
+    if prod(len(ranges[key]) for key in used) > MOST_SYMBOLS or any(len(x) > 10 for key in used for x in ranges[key]):
+        raise table.error(f"stands for more than {MOST_SYMBOLS} symbols, or has a number of more than 10 digits")
     for values in product(*(ranges[key] for key in used)):
         yield dict(zip(used, values, strict=True))
 

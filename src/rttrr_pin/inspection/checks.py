@@ -51,7 +51,6 @@ class Finding:
         reason: what is wrong with it.
         fix: what to do about it.
         repair: the edits that mend it, where they are certain.
-        cause: the reading of the numbers that explains it, in one word such as `"decimal"`; empty where none is known.
     """
 
     id: str
@@ -64,7 +63,6 @@ class Finding:
     reason: str
     fix: str
     repair: tuple[Edit, ...] = ()
-    cause: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,7 +99,6 @@ class Observation:
     reason: str
     fix: str
     repair: tuple[Edit, ...] = ()
-    cause: str = ""
 
 
 KINDS = {UrdfLink: "link", UrdfJoint: "joint", UrdfDocument: "robot"}
@@ -129,7 +126,7 @@ class Check:
             line = 0 if isinstance(seen.at, UrdfDocument) else seen.at.line
             yield Finding(
                 self.id, self.severity, KINDS[type(seen.at)], seen.at.name, line,
-                seen.value, seen.unit, seen.reason, seen.fix, seen.repair, seen.cause,
+                seen.value, seen.unit, seen.reason, seen.fix, seen.repair,
             )  # fmt: skip
 
 

@@ -1,11 +1,13 @@
-"""Results as files: JSON, and text that is written whole or not at all."""
+"""Files: JSON, text that is written whole or not at all, and reading that comes to an end."""
 
 from __future__ import annotations
 
 import json
 import math
 import os
+import select
 import tempfile
+import time
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +19,15 @@ def as_json(data: dict[str, Any]) -> str:
     return json.dumps(_finite(data), indent=2, allow_nan=False) + "\n"
 
 
+_written: list[Path] = []
+"""By this process, in order."""
+
+
+def written_so_far() -> str:
+    """Which files this process has written, in words; each of them is whole."""
+    return f"{', '.join(map(str, _written))} written, nothing else" if _written else "nothing was written"
+
+
 def write_whole(path: Path, text: str) -> None:
     """Write a file whole or not at all, however the process ends.
 
@@ -26,7 +37,8 @@ def write_whole(path: Path, text: str) -> None:
     target = path.resolve()  # a link stays a link
     try:
         if target.exists() and not target.is_file():
-            target.write_text(text, encoding="utf-8")  # a pipe or a device is written to, not replaced
+            _written.append(path)  # what is written to a pipe or a device does not come back
+            target.write_text(text, encoding="utf-8")
             return
         handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
         try:
@@ -36,11 +48,41 @@ def write_whole(path: Path, text: str) -> None:
             os.umask(umask)
             Path(name).chmod(target.stat().st_mode & 0o7777 if target.exists() else 0o666 & ~umask)
             Path(name).replace(target)
+            _written.append(path)
         except BaseException:
             Path(name).unlink(missing_ok=True)
             raise
     except OSError as error:
         raise InputError(f"{path} cannot be written: {error.strerror}; choose another file") from error
+
+
+PATIENCE = 5.0
+"""Seconds that a pipe or a device may take."""
+
+
+def read_limited(path: Path, most: int) -> bytes:
+    """The bytes of a file, or of a pipe or a device, which may have no end and may never say anything.
+
+    Raises:
+        OSError: it cannot be read.
+        InputError: there are more than `most` bytes, or they do not come.
+    """
+    end = time.monotonic() + PATIENCE
+    handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK)  # a pipe that nobody writes to is opened all the same
+    parts: list[bytes] = []
+    size = 0
+    try:
+        while size <= most:
+            if not select.select([handle], [], [], max(0.0, end - time.monotonic()))[0]:
+                raise InputError(f"its text does not come within {PATIENCE:g} s; give a file")
+            part = os.read(handle, 1 << 16)
+            if not part:
+                return b"".join(parts)
+            parts.append(part)
+            size += len(part)
+    finally:
+        os.close(handle)
+    raise InputError(f"it has more than {most:,} bytes; give a shorter file")
 
 
 def _finite(data: Any) -> Any:

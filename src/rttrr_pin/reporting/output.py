@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -10,7 +11,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from rich.console import Console
+from rich.console import Console, ConsoleOptions, RenderableType
+from rich.segment import Segment
 
 from rttrr_pin.reporting.files import as_json, write_whole
 
@@ -20,8 +22,25 @@ SHOW_PROGRESS_AFTER = 1.0
 """Seconds."""
 
 
+COMMANDS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
+"""What a terminal obeys instead of showing it: control characters, marks of direction, halves of characters."""
+
+
+def shown(text: str) -> str:
+    """A text that a terminal only shows, whatever names are in it."""
+    return COMMANDS.sub("?", text)
+
+
 class Output(Console):
-    """Standard output whose reader may leave early, as `head` does: the exit code stays that of the verdict."""
+    """Standard output that obeys no text that it prints.
+
+    Its reader may leave early, as `head` does: the exit code stays that of the verdict.
+    """
+
+    def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterator[Segment]:
+        """The pieces of what is printed, in each of which names of files may stand."""
+        for segment in super().render(renderable, options):
+            yield segment if segment.control else segment._replace(text=shown(segment.text))
 
     def on_broken_pipe(self) -> None:
         """Throw away what follows."""

@@ -8,12 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from fractions import Fraction
 from itertools import pairwise
 from math import prod
 
 from rttrr_pin.auditing.reading.grammar import UnreadableError
-from rttrr_pin.auditing.reading.nodes import Atom, Factor, Group, Named
-from rttrr_pin.auditing.reading.vocabulary import FUNCTIONS, Vocabulary, angle_of
+from rttrr_pin.auditing.reading.nodes import Atom, Factor, Group, Named, Product
+from rttrr_pin.auditing.reading.vocabulary import FUNCTIONS, Multiples, Vocabulary, angle_of, multiples_of
 
 MOST = 64
 """Readings of one product; more than that are no reading but a riddle."""
@@ -29,11 +30,14 @@ def ways(factors: Factors, vocabulary: Vocabulary) -> list[tuple[Iterator[Factor
     Raises:
         UnreadableError: there are too many.
     """
+    factors = _with_multiples(factors, vocabulary)
     readings: Ways = [(factors, "")]
     for i in range(len(factors)):
         for rule in RULES:
             readings = [
-                (changed, joined(note, more)) for kept, note in readings for changed, more in rule(kept, i, vocabulary)
+                (changed, joined(note, more))
+                for kept, note in readings
+                for changed, more in (rule(kept, i, vocabulary) if i < len(kept) else [(kept, "")])
             ]
         if len(readings) > MOST:
             raise too_many_ways(factors[0].start)
@@ -113,10 +117,31 @@ def _symbol_or_function(factors: Factors, i: int, vocabulary: Vocabulary) -> Way
     ]
 
 
+def _long_index(factors: Factors, i: int, vocabulary: Vocabulary) -> Ways:
+    r"""`c_12` is set as c_1 2, and may be meant as `c_{12}`."""
+    same: Ways = [(factors, "")]
+    factor, following = factors[i], factors[i + 1] if i + 1 < len(factors) else None
+    atom = factor.atom
+    if following is None or atom is None or following.operator or factor.exponent is not None or following.prefix:
+        return same
+    digits = following.body
+    if not isinstance(digits, Fraction) or digits.denominator != 1 or not atom.subscript.isdecimal():
+        return same
+    long = replace(atom, subscript=f"{atom.subscript}{digits}")
+    if len(atom.subscript) > 1 or (long not in vocabulary and vocabulary.indexed_angle(long) is None):
+        return same
+    joined_ = (*factors[:i], replace(factor, body=long, exponent=following.exponent), *factors[i + 2 :])
+    return [
+        (factors, f"{atom} {digits} read as a product, as it is set; it may be {long}"),
+        (joined_, f"{atom}{digits} read as {long}; as it is set it is a product"),
+    ]
+
+
 RULES: tuple[Callable[[Factors, int, Vocabulary], Ways], ...] = (
     _symbol_or_function,
     _power_or_prefix,
     _stray_prefix,
+    _long_index,
 )
 """What may be open at one factor; a new kind of doubt is one more function."""
 
@@ -130,21 +155,35 @@ def _takes_argument(factors: Factors, i: int, vocabulary: Vocabulary) -> bool:
     if following is None or following.operator:
         return False
     if isinstance(following.body, Group):
-        return atom.letters.startswith("\\") or _summed_coordinates(following.body, vocabulary) is not None
+        return atom.letters.startswith("\\") or _angle(following.body, vocabulary) is not None
     return isinstance(following.body, Atom) and vocabulary.coordinate(following.body) is not None
 
 
-def _summed_coordinates(group: Group, vocabulary: Vocabulary) -> list[int] | None:
-    """The indices of the coordinates that a bracket adds, each once; None where it is no such sum."""
-    indices: list[int] = []
-    for product in group.products:
-        factor = product.factors[0]
-        index = vocabulary.coordinate(factor.atom) if factor.atom is not None else None
-        plus = all(sign == 1 for line in product.signs for sign in line)
-        if len(product.factors) > 1 or index is None or index in indices or factor.exponent is not None or not plus:
-            return None
-        indices.append(index)
-    return indices if not group.divisor else None
+def _with_multiples(factors: Factors, vocabulary: Vocabulary) -> Factors:
+    r"""`\cos 2 q_1` as `\cos(2 q_1)`."""
+    result: list[Factor] = []
+    left = list(factors)
+    while left:
+        named = isinstance(left[0].body, Atom) and left[0].body.letters in (r"\cos", r"\sin")
+        if named and len(left) > 2 and not left[1].operator and not left[2].operator and left[1].exponent is None:
+            number, angle = left[1], left[2]
+            if isinstance(number.body, Fraction) and angle.atom is not None and vocabulary.coordinate(angle.atom):
+                inside = Product((), (number, replace(angle, exponent=None)), number.start, angle.start)
+                group = Factor(Group((inside,), number.start, angle.start), number.start, angle.exponent)
+                result += [left[0], group]
+                left = left[3:]
+                continue
+        result.append(left.pop(0))
+    return tuple(result)
+
+
+def _angle(group: Group, vocabulary: Vocabulary) -> Multiples | None:
+    """The angle that a bracket is; None where it is none."""
+
+    def coordinate(factor: Factor) -> int | None:
+        return None if factor.atom is None else vocabulary.coordinate(factor.atom)
+
+    return None if group.divisor else multiples_of(group.products, coordinate)
 
 
 def _named(factors: Factors, vocabulary: Vocabulary) -> Iterator[Factor]:
@@ -155,7 +194,6 @@ def _named(factors: Factors, vocabulary: Vocabulary) -> Iterator[Factor]:
         if _takes_argument(factors, i, vocabulary):
             yield _function(factor, factors[next(places)], vocabulary)
         elif (atom := factor.atom) is not None:
-            factor.check_power()
             yield replace(factor, body=_symbol(atom, factor.start, vocabulary))
         else:
             yield factor
@@ -164,26 +202,24 @@ def _named(factors: Factors, vocabulary: Vocabulary) -> Iterator[Factor]:
 def _symbol(atom: Atom, start: int, vocabulary: Vocabulary) -> Named:
     angle = vocabulary.indexed_angle(atom)
     if angle is not None:
-        return Named(angle)
+        return angle
     if atom.letters.startswith(("\\cos", "\\sin")):
         raise UnreadableError("a sine or cosine is wanted with a coordinate or a sum of coordinates", start)
     return Named(vocabulary.identifier(atom), "" if atom in vocabulary else str(atom))
 
 
 def _function(function: Factor, argument: Factor, vocabulary: Vocabulary) -> Factor:
-    function.check_power()
-    argument.check_power()
     note = ""
-    indices: Sequence[int | None] | None = None
+    multiples: Multiples | None = None
     if isinstance(argument.body, Group):
-        indices = _summed_coordinates(argument.body, vocabulary)
-    elif isinstance(argument.body, Atom):
-        indices = [vocabulary.coordinate(argument.body)]
+        multiples = _angle(argument.body, vocabulary)
+    elif isinstance(argument.body, Atom) and (index := vocabulary.coordinate(argument.body)) is not None:
+        multiples = {index: 1}
         if argument.exponent is not None:
             note = f"the power {argument.exponent} behind {argument.body} read as that of its sine or cosine"
     letters = function.body.letters if isinstance(function.body, Atom) else ""
-    name = angle_of(FUNCTIONS[letters], indices, argument.start)
-    return replace(function, body=Named(name, note=note), exponent=function.power * argument.power)
+    angle = angle_of(FUNCTIONS[letters], multiples, argument.start)
+    return replace(function, body=replace(angle, note=note), exponent=function.power * argument.power)
 
 
 def signs(lines: Sequence[Sequence[int]]) -> list[tuple[int, str]]:

@@ -21,6 +21,9 @@ OPERATORS = ("TIMES", "STAR", "SLASH")
 CLOSES = {"RPAR": "LPAR", "RSQB": "LSQB", "RCURLY": "LCURLY"}
 """Which bracket each closing one ends."""
 
+SYMBOL_ENDS = {"LETTER", "GREEK", "SUB_DIGIT", "SUP_DIGIT", "SUP_STAR", "PRIME", "RBRACE"}
+"""What a symbol with its scripts may end with."""
+
 WORDS = {
     "a symbol": {"LETTER", "GREEK", "ACCENT", "STYLE", "EMPTY", "FUNCTION"},
     "a number": {"NUMBER"},
@@ -69,6 +72,22 @@ def parser() -> Lark:
 def tokens_of(text: str) -> list[Token]:
     """The tokens of any text at all: what the grammar does not know is a token of type OTHER."""
     return list(parser().lex(text))
+
+
+def without_time(tokens: Sequence[Token]) -> list[Token]:
+    r"""The tokens without the "(t)" behind symbols: `q_2(t)`, `\ddot{q}_{1}{\left(t \right)}`."""
+    kept: list[Token] = []
+    left = list(tokens)
+    while left:
+        types = [token.type for token in left[:5]]
+        braced = types[:1] == ["LBRACE"]
+        inside = types[1:4] if braced else types[:3]
+        timed = inside == ["LPAR", "LETTER", "RPAR"] and left[2 if braced else 1] == "t"
+        if timed and kept and kept[-1].type in SYMBOL_ENDS and (not braced or types[4:] == ["RBRACE"]):
+            left = left[5 if braced else 3 :]
+        else:
+            kept.append(left.pop(0))
+    return kept
 
 
 def start_of(node: Node) -> int:

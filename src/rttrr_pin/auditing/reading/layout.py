@@ -12,7 +12,7 @@ from itertools import combinations, pairwise
 
 from lark import Token
 
-from rttrr_pin.auditing.reading.grammar import CLOSES, OPERATORS, SHOWN, UnreadableError, end_of, start_of, tokens_of
+from rttrr_pin.auditing.reading.grammar import CLOSES, OPERATORS, SHOWN, UnreadableError, end_of, start_of
 from rttrr_pin.auditing.reading.rows import Row, rows_of
 
 MOST = 200
@@ -55,13 +55,13 @@ class Part:
         return tokens
 
 
-def layouts(text: str, components: int) -> list[tuple[list[Part], str]]:
-    """The ways to divide a display into components, each with what had to be decided.
+def layouts(tokens: Sequence[Token], text: str, components: int, grid: bool = False) -> list[tuple[list[Part], str]]:
+    """The ways to divide a display into components, each with what had to be decided; `grid`: a matrix has columns.
 
     Raises:
         UnreadableError: the display has another number of components, or is no display of equations.
     """
-    rows, matrix = rows_of(tokens_of(text))
+    rows, matrix = rows_of(tokens, grid)
     if not rows:
         raise UnreadableError("there is no equation here", 0)
     return [_layout(rows, starts, note) for starts, note in _divisions(text, rows, matrix, components)]

@@ -11,11 +11,12 @@ from math import prod
 from rttrr_pin.auditing.printed import PrintedTerm, Reading
 from rttrr_pin.auditing.reading.ambiguity import MOST, joined, signs, too_many_ways
 from rttrr_pin.auditing.reading.grammar import UnreadableError
-from rttrr_pin.auditing.reading.nodes import LARGEST_POWER, ONLY_NUMBERS_DIVIDE, Factor, Group, Named, Product
+from rttrr_pin.auditing.reading.nodes import LARGEST_POWER, DividesError, Factor, Group, Named, Product
+from rttrr_pin.derivation.numbers import MOST_BITS, fits
 from rttrr_pin.derivation.symbols import factors_of
 
-LARGEST = 10_000
-"""Terms that one product may expand to."""
+LARGEST = 1000
+"""Terms that a sum may expand to: the longest of the paper has 56."""
 
 Terms = tuple[PrintedTerm, ...]
 
@@ -32,7 +33,17 @@ def terms_of(products: Sequence[Product], text: str, ways: Ways) -> Terms:
     Raises:
         UnreadableError: something in it is no polynomial, or there are too many terms or readings.
     """
-    return tuple(term for product in products for term in _terms(product, text, ways))
+    terms: list[PrintedTerm] = []
+    for product in products:
+        terms += _terms(product, text, ways)
+        if len(terms) > LARGEST:
+            raise too_many_terms(product.start)
+    return tuple(terms)
+
+
+def too_many_terms(start: int) -> UnreadableError:
+    """The error for what expands to more than `LARGEST` terms."""
+    return UnreadableError(f"this expands to more than {LARGEST} terms; print it expanded or as its parts", start)
 
 
 def _terms(product: Product, text: str, ways: Ways) -> Terms:
@@ -58,18 +69,22 @@ def _multiplied(factors: Iterable[Factor], note: str, text: str, ways: Ways) -> 
         if isinstance(body, Fraction):
             coefficient *= _power(body, factor, factor.operator == "/")
         elif isinstance(body, Named):
+            factor.check_power()
             symbols.append(body)
             exponents[body.name] += factor.power
+            coefficient *= body.sign**factor.power
         elif isinstance(body, Group):
-            terms = terms_of(body.products, text, ways)
+            terms = terms_of(body.products, body.text or text, ways)
             if factor.operator == "/":
-                coefficient *= _power(constant(terms, ONLY_NUMBERS_DIVIDE, factor.start), factor, True)
+                coefficient *= _power(_divisor(terms, factor.start), factor, True)
                 continue
             factor.check_power()
             if body.divisor:
-                divisor = constant(terms_of(body.divisor, text, ways), ONLY_NUMBERS_DIVIDE, factor.start)
+                divisor = _divisor(terms_of(body.divisor, body.text or text, ways), factor.start)
                 coefficient *= _power(divisor, factor, True)
             brackets += [(body, terms)] * factor.power
+        if not fits(coefficient):
+            raise UnreadableError("its numbers multiply to more digits than any quantity has", factor.start)
     unknown = tuple(symbol.unknown for symbol in symbols if symbol.unknown)
     notes = joined(note, *(symbol.note for symbol in symbols))
     return Reading(coefficient, factors_of(exponents), notes, unknown), brackets
@@ -77,29 +92,41 @@ def _multiplied(factors: Iterable[Factor], note: str, text: str, ways: Ways) -> 
 
 def _power(value: Fraction, factor: Factor, divides: bool) -> Fraction:
     power = -factor.power if divides else factor.power
-    if abs(power) > LARGEST_POWER or (value == 0 and power < 0):
-        raise UnreadableError(f"this is no number that can be meant: {value} to the power {power}", factor.start)
+    bits = max(value.numerator.bit_length(), value.denominator.bit_length())
+    if abs(power) > LARGEST_POWER or bits * abs(power) > MOST_BITS or (value == 0 and power < 0):
+        raise UnreadableError("this is no number that can be meant: its power has too many digits", factor.start)
     return Fraction(value**power)
 
 
-def constant(terms: Terms, message: str, start: int) -> Fraction:
-    """The value of a sum of numbers; UnreadableError with a message and a place where there is a symbol in it."""
-    if any(len(term.readings) > 1 or term.readings[0].factors for term in terms):
-        raise UnreadableError(message, start)
-    return sum((term.readings[0].coefficient for term in terms), Fraction(0))
+def constant(terms: Terms) -> Fraction | None:
+    """The value of a sum of numbers; None where there is a symbol in it, or one that is too long."""
+    total = Fraction(0)
+    for term in terms:
+        if len(term.readings) > 1 or term.readings[0].factors or not fits(total):
+            return None
+        total += term.readings[0].coefficient
+    return total
+
+
+def _divisor(terms: Terms, start: int) -> Fraction:
+    value = constant(terms)
+    if value is None:
+        raise DividesError(start)
+    return value
 
 
 def _expanded(product: Product, choices: Sequence[Sequence[Reading]], brackets: Brackets, text: str) -> Terms:
     """One term for each choice of a term from every bracket; `choices` are the readings of what is no bracket."""
     if prod(len(terms) for _, terms in brackets) > LARGEST:
-        message = f"this expands to more than {LARGEST} terms; print it expanded or as its parts"
-        raise UnreadableError(message, product.start)
+        raise too_many_terms(product.start)
     expanded = []
     for picked in itertools.product(*(range(len(terms)) for _, terms in brackets)):
         alternatives = [*choices, *(terms[i].readings for (_, terms), i in zip(brackets, picked, strict=True))]
         if prod(map(len, alternatives)) > MOST:
             raise too_many_ways(product.start)
         readings = dict.fromkeys(map(_product, itertools.product(*alternatives)))
+        if not all(fits(reading.coefficient) for reading in readings):
+            raise UnreadableError("its numbers multiply to more digits than any quantity has", product.start)
         expanded.append(PrintedTerm(_shown(product, brackets, picked, text), tuple(readings)))
     return tuple(expanded)
 
@@ -118,12 +145,16 @@ def _product(readings: Sequence[Reading]) -> Reading:
 def _shown(product: Product, brackets: Brackets, picked: Sequence[int], text: str) -> str:
     """The product as printed, on one line, with dots for the terms of each bracket that are not meant."""
     pieces: dict[tuple[int, int], list[str]] = {}
+    terms_meant: list[str] = []
     for (group, terms), i in zip(brackets, picked, strict=True):
-        if len(terms) > 1:
+        if group.abbreviated:
+            terms_meant.append(f"{group.abbreviated}: {terms[i].text}")
+        elif len(terms) > 1:
             piece = f"{'... ' if i else ''}{terms[i].text}{' ...' if i + 1 < len(terms) else ''}"
             pieces.setdefault((group.start, group.end), []).append(piece)
     shown, position = "", product.start
     for (start, end), alternatives in sorted(pieces.items()):
         shown += text[position:start] + ", ".join(alternatives)
         position = end
-    return " ".join((shown + text[position : product.end]).replace("\\\\", " ").replace("&", " ").split())
+    meant = f" (of {', '.join(terms_meant)})" if terms_meant else ""
+    return " ".join((shown + text[position : product.end] + meant).replace("\\\\", " ").replace("&", " ").split())

@@ -8,9 +8,14 @@ from fractions import Fraction
 from rttrr_pin.auditing.reading.grammar import UnreadableError
 
 LARGEST_POWER = 400
-"""Of a number: 10^400 is past every quantity."""
+"""Of anything: no equation has a larger one."""
 
-ONLY_NUMBERS_DIVIDE = "only numbers may divide; write the quotient out as a product"
+
+class DividesError(UnreadableError):
+    """A symbol divides: the text is no polynomial; it may be a quotient of two."""
+
+    def __init__(self, start: int) -> None:
+        super().__init__("only numbers may divide here; write the quotient out as a product", start)
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,12 +60,16 @@ class Group:
         products: the sum inside.
         start, end: where that sum stands.
         divisor: the sum in the denominator.
+        abbreviated: the symbol that is printed for it; empty for what is printed itself.
+        text: the text that it stands in, where that is another equation's; else empty.
     """
 
     products: tuple[Product, ...]
     start: int
     end: int
     divisor: tuple[Product, ...] = ()
+    abbreviated: str = ""
+    text: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,11 +80,13 @@ class Named:
         name: that the robot's symbols have, or one of its own where nothing declares it.
         unknown: the spelling where nothing declares it; else empty.
         note: what had to be decided to read it so.
+        sign: -1 where the name is minus what is printed: sin(q_2 - q_1) is -sin(q_1 - q_2).
     """
 
     name: str
     unknown: str = ""
     note: str = ""
+    sign: int = 1
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,9 +115,9 @@ class Factor:
         return 1 if self.exponent is None else self.exponent
 
     def check_power(self) -> None:
-        """Raises UnreadableError where it divides, or has a power that no symbol and no bracket can have."""
+        """Raises DividesError where it divides, UnreadableError where its power is none of a symbol or bracket."""
         if self.operator == "/":
-            raise UnreadableError(ONLY_NUMBERS_DIVIDE, self.start)
+            raise DividesError(self.start)
         if not 0 <= self.power <= LARGEST_POWER:
             message = f"wanted a power from 0 to {LARGEST_POWER}, got {self.power}; write the power out"
             raise UnreadableError(message, self.start)

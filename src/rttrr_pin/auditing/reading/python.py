@@ -5,16 +5,20 @@ from __future__ import annotations
 import ast
 import warnings
 from collections.abc import Iterator, Mapping
-from decimal import Decimal
 from fractions import Fraction
 from itertools import accumulate
 
 from rttrr_pin.auditing.printed import PrintedComponent
+from rttrr_pin.auditing.reading.component import check_length, printed_component
 from rttrr_pin.auditing.reading.grammar import UnreadableError
 from rttrr_pin.auditing.reading.multiply import constant, terms_of
 from rttrr_pin.auditing.reading.nodes import LARGEST_POWER, Factor, Group, Named, Product
-from rttrr_pin.auditing.reading.vocabulary import angle_of, index_of, unclashing
-from rttrr_pin.errors import InputError
+from rttrr_pin.auditing.reading.vocabulary import angle_of, index_of, multiples_of, unclashing
+from rttrr_pin.derivation.numbers import exact_number
+from rttrr_pin.errors import InputError, shortened
+
+Abbreviations = Mapping[str, Group]
+"""By variable."""
 
 FUNCTIONS = {"cos": "c", "sin": "s"}
 """Functions of an angle, and what the names of their values begin with."""
@@ -22,7 +26,7 @@ FUNCTIONS = {"cos": "c", "sin": "s"}
 SymbolNode = ast.Name | ast.Attribute | ast.Subscript
 
 
-def read_python(text: str, names: Mapping[str, str]) -> PrintedComponent:
+def read_python(text: str, names: Mapping[str, str], abbreviations: Abbreviations | None = None) -> PrintedComponent:
     """Reads an expression such as `-m2*l1*l2*sin(q2)*qd1**2 + m2*g*l2*cos(q1 + q2)`.
 
     Args:
@@ -30,6 +34,7 @@ def read_python(text: str, names: Mapping[str, str]) -> PrintedComponent:
             `math.sin`, ...) of coordinates and sums of coordinates; numbers may divide. One assignment may hold it.
         names: of symbols, by variable: `{"q2": "q_2", "qd[0]": "v_1", "self.m2": "M_2"}`. A variable that it lacks is
             kept under a name of its own and stands in `Reading.unknown`.
+        abbreviations: what variables stand for that other equations define.
 
     Returns:
         The terms, brackets expanded, each with one reading; decimals are exact. Where it cannot be read,
@@ -38,27 +43,35 @@ def read_python(text: str, names: Mapping[str, str]) -> PrintedComponent:
     Raises:
         InputError: a key of `names` is no variable.
     """
-    printed = " ".join(text.split())
-    source = _Source(text, {_variable(key): name for key, name in names.items()})
+    source = _Source(text, {_variable(key): name for key, name in names.items()}, abbreviations or {})
+    return printed_component(lambda: source.products(source.expression()), text, text, _one_way)
+
+
+def defined_in_python(text: str, abbreviations: Abbreviations, names: Mapping[str, str]) -> tuple[str, Group] | None:
+    """The variable that an assignment defines, with what it stands for; None where it is no such assignment."""
+    source = _Source(text, {_variable(key): name for key, name in names.items()}, abbreviations)
     try:
-        return PrintedComponent(printed, terms_of(source.products(source.expression()), text, _one_way))
-    except UnreadableError as error:
-        return PrintedComponent(printed, (), error.placed(text))
-    except (RecursionError, MemoryError):
-        fault = UnreadableError("too many brackets in each other, or terms, for Python's parser; split the sum", 0)
-        return PrintedComponent(printed, (), fault.placed(text))
+        check_length(text)
+        match ast.parse(source.code).body:
+            case [ast.Assign(targets=[ast.Name() | ast.Attribute() | ast.Subscript() as target], value=value)]:
+                variable = ast.unparse(target)
+                group = Group(source.products(value), 0, 0, abbreviated=variable, text=text)
+                return None if variable in source.known else (variable, group)
+    except (UnreadableError, SyntaxError, ValueError, RecursionError, MemoryError):
+        pass
+    return None
 
 
 def _variable(key: str) -> str:
     try:
         node = ast.parse(key, mode="eval").body
-    except (SyntaxError, ValueError) as error:
+        if isinstance(node, SymbolNode):
+            return ast.unparse(node)
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
         raise InputError(
-            f"{key!r} is no variable of Python; wanted a name such as 'm2', 'q[0]' or 'self.m2'"
+            f"{shortened(key)!r} is no variable of Python; wanted a name such as 'm2', 'q[0]' or 'self.m2'"
         ) from error
-    if not isinstance(node, SymbolNode):
-        raise InputError(f"{key!r} is an expression; wanted one variable such as 'm2', 'q[0]' or 'self.m2'")
-    return ast.unparse(node)
+    raise InputError(f"{shortened(key)!r} is an expression; wanted one variable such as 'm2', 'q[0]' or 'self.m2'")
 
 
 def _one_way(factors: tuple[Factor, ...]) -> list[tuple[tuple[Factor, ...], str]]:
@@ -66,11 +79,15 @@ def _one_way(factors: tuple[Factor, ...]) -> list[tuple[tuple[Factor, ...], str]
     return [(factors, "")]
 
 
+def _coordinate(factor: Factor) -> int | None:
+    return index_of(factor.body.name) if isinstance(factor.body, Named) else None
+
+
 class _Source:
     """Reads one text: `ast` counts its places in lines and bytes, messages in characters of the text."""
 
-    def __init__(self, text: str, known: Mapping[str, str]) -> None:
-        self.text, self.known = text, known
+    def __init__(self, text: str, known: Mapping[str, str], abbreviations: Abbreviations) -> None:
+        self.text, self.known, self.abbreviations = text, known, abbreviations
         self.offset = len(text) - len(text.lstrip())
         self.code = text[self.offset :]
         if "#" not in self.code:  # a comment ends with its line; without one, a sum may be broken anywhere
@@ -153,45 +170,41 @@ class _Source:
                 yield Factor(Group(self.products(node), start, self._end(node)), start, power)
             case ast.BinOp(op=ast.Pow(), left=base, right=exponent):
                 yield from self._factors(base, self._power(exponent, power))
+            case ast.Call(func=called, args=[ast.Name("t")], keywords=[]) if ast.unparse(called) in self.known:
+                yield Factor(self._symbol(ast.unparse(called)), start, power)  # q1(t)
             case ast.Call():
-                yield Factor(Named(self._angle(node)), start, power)
+                yield Factor(self._angle(node), start, power)
             case ast.Name() | ast.Attribute() | ast.Subscript():
-                yield Factor(self._symbol(ast.unparse(node)), start, power)
+                variable = ast.unparse(node)
+                yield Factor(self.abbreviations.get(variable) or self._symbol(variable), start, power)
             case _:
                 message = "this is no sum of products of variables, numbers, sines and cosines; write it out"
                 raise self._fault(message, node)
 
     def _number(self, node: ast.Constant) -> Fraction:
-        if type(node.value) is int:
-            return Fraction(node.value)
-        if type(node.value) is not float:
-            raise self._fault(f"wanted a real number, got {node.value!r}", node)
-        decimal = Decimal(self.text[self._start(node) : self._end(node)])  # as written: 0.1 is a tenth
-        if abs(decimal.adjusted()) > LARGEST_POWER:
-            raise self._fault("this is no number that can be meant", node)
-        return Fraction(decimal)
+        if type(node.value) not in (int, float):
+            raise self._fault(f"wanted a real number, got {type(node.value).__name__}", node)
+        try:
+            return exact_number(self.text[self._start(node) : self._end(node)])
+        except ValueError as error:
+            raise self._fault(f"this is no number that can be meant: {error}", node) from error
 
     def _power(self, exponent: ast.expr, outer: int) -> int:
         terms = terms_of(self.products(exponent), self.text, _one_way)
-        power = outer * constant(terms, "only numbers may be powers", self._start(exponent))
+        number = constant(terms)
+        if number is None:
+            raise self._fault("only numbers may be powers", exponent)
+        power = outer * number
         if power.denominator != 1 or not 0 <= power <= LARGEST_POWER:
-            raise self._fault(f"wanted a whole power from 0 to {LARGEST_POWER}, got {power}", exponent)
+            raise self._fault(f"wanted a whole power from 0 to {LARGEST_POWER}, got {float(power):g}", exponent)
         return int(power)
 
-    def _angle(self, node: ast.Call) -> str:
+    def _angle(self, node: ast.Call) -> Named:
         called = node.func.attr if isinstance(node.func, ast.Attribute) else ast.unparse(node.func)
         if called not in FUNCTIONS or len(node.args) != 1 or node.keywords:
             raise self._fault("the only functions are sin and cos of one angle; write it out", node)
-        argument = node.args[0]
-        indices: list[int | None] = []
-        while isinstance(argument, ast.BinOp) and isinstance(argument.op, ast.Add):
-            indices.append(self._coordinate(argument.right))
-            argument = argument.left
-        indices.append(self._coordinate(argument))
-        return angle_of(FUNCTIONS[called], indices, self._start(node.args[0]))
-
-    def _coordinate(self, node: ast.expr) -> int | None:
-        return index_of(self.known.get(ast.unparse(node), "")) if isinstance(node, SymbolNode) else None
+        multiples = multiples_of(self.products(node.args[0]), _coordinate)
+        return angle_of(FUNCTIONS[called], multiples, self._start(node.args[0]))
 
     def _symbol(self, variable: str) -> Named:
         if variable in self.known:

@@ -45,13 +45,15 @@ class Row:
         return self.tokens[0].type in ("SIGN", *OPERATORS)
 
 
-def rows_of(tokens: Sequence[Token]) -> tuple[list[Row], bool]:
+def rows_of(tokens: Sequence[Token], grid: bool = False) -> tuple[list[Row], bool]:
     """The rows that have something on a right-hand side, and whether a matrix holds them.
+
+    Of a matrix that may have rows and columns, `grid`, each cell is a row of the result.
 
     Raises:
         UnreadableError: environments or equals signs are not those of one equation.
     """
-    tokens = _without_lines(_without_tags(tokens))
+    tokens = plain_lines(tokens)
     begins = [i for i, token in enumerate(tokens) if token.type == "BEGIN"]
     ends = [i for i, token in enumerate(tokens) if token.type == "END"]
     if not begins and not ends:
@@ -61,7 +63,12 @@ def rows_of(tokens: Sequence[Token]) -> tuple[list[Row], bool]:
         message = "one matrix is wanted, with its begin and its end; give each its own text"
         raise UnreadableError(message, start_of(superfluous))
     _around(tokens[: begins[0]], tokens[ends[0] + 1 :])
-    return _cells(tokens[begins[0] + 1 : ends[0]]), True
+    return _cells(tokens[begins[0] + 1 : ends[0]], grid), True
+
+
+def plain_lines(tokens: Sequence[Token]) -> list[Token]:
+    """The tokens without numbers of equations, and without the begins and ends of lines."""
+    return _without_lines(_without_tags(tokens))
 
 
 def _without_tags(tokens: Sequence[Token]) -> list[Token]:
@@ -154,9 +161,11 @@ def _around(before: Sequence[Token], after: Sequence[Token]) -> None:
         raise UnreadableError(message, start_of(right[0]))
 
 
-def _cells(tokens: Sequence[Token]) -> list[Row]:
+def _cells(tokens: Sequence[Token], grid: bool) -> list[Row]:
     rows = [row for row in divided(tokens, "BREAK") if row]
     cells = [divided(row, "AMPERSAND") for row in rows]
+    if grid:
+        return [row for cell in (cell for row in cells for cell in row) if (row := _row(list(cell))).tokens]
     wide = next((row for row in cells if len(row) > 1), None)
     if wide is not None and len(rows) > 1:
         raise UnreadableError("the matrix has rows and columns, wanted one column or one row", start_of(rows[0][0]))

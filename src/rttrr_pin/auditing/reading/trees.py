@@ -9,6 +9,7 @@ from lark import Token, Tree
 
 from rttrr_pin.auditing.reading.grammar import Node, UnreadableError, divided, end_of, parse, start_of, tokens_of
 from rttrr_pin.auditing.reading.nodes import Atom, Factor, Group, Product, braced
+from rttrr_pin.derivation.numbers import exact_number
 
 BOLD = {r"\mathbf", r"\boldsymbol", r"\bm", r"\textbf", r"\mathcal", r"\mathsf"}
 """Styles that make another symbol of a letter; the upright ones do not."""
@@ -89,11 +90,18 @@ def _base(node: Node) -> Factor:
                 raise UnreadableError("braces print no bracket, so they cannot hold a sum or a product; use ( )", start)
             return products[0].factors[0]
         case "NUMBER":
-            return Factor(Fraction(str(node)), start)
+            return Factor(_number(str(node), start), start)
         case "SHORT_FRACTION":
             numerator, denominator = (int(character) for character in str(node) if character.isdigit())
             return Factor(Fraction(numerator, denominator), start)
     return Factor(_symbol(node), start)
+
+
+def _number(text: str, start: int) -> Fraction:
+    try:
+        return exact_number(text)
+    except ValueError as error:
+        raise UnreadableError(f"this is no number that can be meant: {error}", start) from error
 
 
 def _symbol(node: Node) -> Atom:
@@ -140,8 +148,9 @@ def _scripted(factor: Factor, script: Node) -> Factor:
     sign = mark.rstrip("0123456789")
     digits = mark[len(sign) :]
     if digits and sign in ("", "-", "+", "*"):  # q^{*2} is the square of q^*
-        if factor.exponent is not None:
-            raise UnreadableError("two powers on one factor; leave one", start_of(script))
+        if factor.exponent is not None or len(digits) > 4:
+            message = "this is no power that can be meant" if len(digits) > 4 else "two powers on one factor; leave one"
+            raise UnreadableError(message, start_of(script))
         factor = replace(factor, exponent=int(digits if sign == "*" else mark))
         mark = sign if sign == "*" else ""
     if not mark:

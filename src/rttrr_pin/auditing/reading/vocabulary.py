@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+import re
+from collections import Counter
+from collections.abc import Callable, Collection, Mapping, Sequence
+from fractions import Fraction
+from math import prod
 
 from rttrr_pin.auditing.reading.grammar import UnreadableError
-from rttrr_pin.auditing.reading.nodes import Atom
+from rttrr_pin.auditing.reading.nodes import Atom, Factor, Group, Named, Product
 from rttrr_pin.auditing.reading.trees import atom_of
 from rttrr_pin.errors import InputError
 
@@ -16,21 +20,54 @@ FUNCTIONS = {"c": "c", "C": "c", r"\cos": "c", "s": "s", "S": "s", r"\sin": "s"}
 """Spellings of cosine and sine, and what the names of their values begin with."""
 
 
-def angle_name(function: str, indices: Iterable[int]) -> str:
-    """The name of the cosine ("c") or sine ("s") of a coordinate, or of a sum of coordinates, by their indices."""
-    return "_".join([function, *(str(index) for index in sorted(indices))])
+LARGEST_MULTIPLE = 12
+"""Of all coordinates in one angle."""
+
+PART = re.compile(r"m?\d+")
+"""What the name of an angle is made of: 1_1_m2 is 2 q_1 - q_2."""
+
+Multiples = Mapping[int, int]
+"""An angle: whole multiples of coordinates, by their indices; none of them 0."""
 
 
-def angle_of(function: str, indices: Sequence[int | None] | None, start: int) -> str:
-    """The name of a cosine or sine whose angle stands at `start`.
+def angle_of(function: str, multiples: Multiples | None, start: int) -> Named:
+    """The cosine ("c") or sine ("s") of an angle that stands at `start`; the first multiple in its name is positive.
 
     Raises:
-        UnreadableError: the angle is no sum of coordinates, each once.
+        UnreadableError: the angle is no sum of whole multiples of coordinates.
     """
-    known = {index for index in indices or () if index is not None}
-    if indices is None or len(known) < len(indices):
-        raise UnreadableError("the angle is wanted as a coordinate or a sum of coordinates", start)
-    return angle_name(function, known)
+    total = sum(map(abs, (multiples or {}).values()))
+    if not multiples or total > LARGEST_MULTIPLE:
+        raise UnreadableError("the angle is wanted as a coordinate, or a sum or multiple of coordinates", start)
+    turn = -1 if multiples[min(multiples)] < 0 else 1
+    parts = [f"{'m' if n * turn < 0 else ''}{k}" for k, n in sorted(multiples.items()) for _ in range(abs(n))]
+    return Named("_".join([function, *parts]), sign=turn if function == "s" else 1)
+
+
+def multiples_of(products: Sequence[Product], coordinate: Callable[[Factor], int | None]) -> Multiples | None:
+    """The angle that a sum is; None where it is none. `coordinate` gives the index of a factor that is one."""
+    total: Counter[int] = Counter()
+    for product in products:
+        number = Fraction(prod(product.signs[-1]) if product.signs else 1)
+        inner: Multiples | None = None
+        for factor in product.factors:
+            if isinstance(factor.body, Fraction) and factor.operator != "/" and factor.power == 1:
+                number *= factor.body
+                continue
+            if inner is not None or factor.operator == "/" or factor.power != 1:
+                return None
+            if isinstance(factor.body, Group):
+                inner = None if factor.body.divisor else multiples_of(factor.body.products, coordinate)
+            else:
+                index = coordinate(factor)
+                inner = None if index is None else {index: 1}
+            if inner is None:
+                return None
+        if inner is None or number.denominator != 1 or abs(number) > LARGEST_MULTIPLE:
+            return None
+        for index, multiple in inner.items():
+            total[index] += int(number) * multiple
+    return {index: multiple for index, multiple in total.items() if multiple}
 
 
 def index_of(name: str) -> int | None:
@@ -42,7 +79,7 @@ def index_of(name: str) -> int | None:
 def unclashing(name: str, known: Collection[str]) -> str:
     """A name for a symbol that is not known, with `_` behind it as often as it takes to be no known symbol's."""
     function, *indices = name.split("_")
-    angle = function in FUNCTIONS.values() and bool(indices) and all(index.isdecimal() for index in indices)
+    angle = function in FUNCTIONS.values() and bool(indices) and all(map(PART.fullmatch, indices))
     return unclashing(f"{name}_", known) if angle or name in known else name
 
 
@@ -91,24 +128,34 @@ class Vocabulary:
         name = self._names.get(atom)
         return None if name is None else index_of(name)
 
-    def indexed_angle(self, atom: Atom) -> str | None:
-        """The name that `c_4`, `s_{12}`, `c_{1,12}` or `s_{q_4}` means; None for any symbol that is no such thing."""
+    def indexed_angle(self, atom: Atom) -> Named | None:
+        """What `c_4`, `s_{12}`, `c_{1,12}`, `c_{1-2}` or `s_{q_4}` means; None for any symbol that is no such thing."""
         if atom != Atom(atom.letters, atom.subscript) or atom.letters not in FUNCTIONS or atom in self:
             return None
-        indices = self._indices(atom.subscript)
-        if not indices or len(set(indices)) < len(indices) or not self.coordinates.issuperset(indices):
+        multiples = self._multiples(atom.subscript)
+        if not multiples or not self.coordinates.issuperset(multiples):
             return None
-        return angle_name(FUNCTIONS[atom.letters], indices)
+        return angle_of(FUNCTIONS[atom.letters], multiples, 0)
 
-    def _indices(self, subscript: str) -> list[int]:
-        parts = subscript.replace("+", ",").split(",")
-        if all(part.isdecimal() for part in parts):
-            return [int(digit) for digit in subscript] if len(parts) == 1 else [int(part) for part in parts]
+    def _multiples(self, subscript: str) -> Multiples:
+        """The angle of an index: digits, numbers or coordinates, each once, with signs or commas between them."""
+        if subscript.isdecimal():
+            found: list[tuple[int, int | None]] = [(1, int(digit)) for digit in subscript]
+        else:
+            parts = re.findall(r"(,?[+-]?)([^+,-]+)", subscript)
+            if "".join(sign + part for sign, part in parts) != subscript or len(parts) > LARGEST_MULTIPLE:
+                return {}
+            found = [(-1 if sign.endswith("-") else 1, self._index(part)) for sign, part in parts]
+        indices = {index: sign for sign, index in found if index is not None}
+        return indices if len(indices) == len(found) else {}
+
+    def _index(self, text: str) -> int | None:
+        if text.isdecimal():
+            return int(text[:10])
         try:
-            indices = [self.coordinate(atom_of(part)) for part in parts]
+            return self.coordinate(atom_of(text))
         except UnreadableError:
-            return []
-        return [index for index in indices if index is not None] if None not in indices else []
+            return None
 
     def identifier(self, atom: Atom) -> str:
         """The name of a symbol, known or not.

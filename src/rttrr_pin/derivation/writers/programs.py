@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from textwrap import wrap
+from textwrap import TextWrapper
 from typing import Any
 
 from rttrr_pin.compile.emit.c import identifier
@@ -22,6 +22,9 @@ from rttrr_pin.derivation.writers.wording import conventions, names_of_links, pl
 
 WIDTH = 112
 """Characters in a line of code."""
+
+LONGEST_NAME = 60
+"""Characters of a robot's name in those of functions: compilers tell 63 apart."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,7 +68,7 @@ class Language:
         return rendered(
             self.template,
             {"wrapped": _wrapped, "uses": _uses},
-            robot=identifier(model.name),
+            robot=identifier(model.name)[:LONGEST_NAME],
             title=f"Dynamic model of {plain(model.name)}: {', '.join(derivation.quantities)}.",
             texts=[
                 *([preface] if preface else []),
@@ -189,4 +192,5 @@ def _uses(lines: Sequence[str], argument: str) -> bool:
 
 def _wrapped(text: str, first: int = 0, others: int = 0) -> str:
     """A text in lines, the first and the others with so many blanks in front."""
-    return "\n".join(wrap(text, WIDTH, initial_indent=" " * first, subsequent_indent=" " * others))
+    wrapper = TextWrapper(WIDTH, " " * first, " " * others, break_long_words=False, break_on_hyphens=False)
+    return "\n".join(wrapper.wrap(text))  # a name stays whole
