@@ -62,6 +62,19 @@ def about_origin() -> tuple[str, ...]:
     return tensor_of(BODY.placed((0.2, 0.0, 0.0)).inertia + MASS * np.diag([0.0, 0.04, 0.04]))
 
 
+PRODUCTS = (0.02, 0.005, 0, 0.02, 0.004, 0.02)
+"""That of a body which is not its own mirror image across the plane y = 0."""
+
+
+COPIED = {"xyz": "0.1 0.2 0"}
+
+
+def dense(density: float) -> str:
+    """An arm of three bodies of one density."""
+    box = inertial(density * Box(BOX).volume, scaled(density / 2700.0), xyz=AT) + DRAWN
+    return arm(box, base=box, extra=tip(box))
+
+
 def swapped() -> tuple[str, ...]:
     return tensor_of(BODY.inertia[np.ix_([2, 1, 0], [2, 1, 0])])
 
@@ -71,25 +84,54 @@ MESH = shape('<mesh filename="package://nowhere/meshes/arm.stl"/>')
 CASES: dict[str, list[tuple[str, list[str]]]] = {
     "P101": [(arm(inertial(-1)), ["arm"])],
     "P102": [(arm(inertial(0)), ["arm"]), (arm(inertial(0), extra=tip(inertial(0))), ["arm", "tip"])],
-    "P103": [(arm(""), ["arm"]), (arm(inertial(0, (0,) * 6), extra=tip("")), ["arm"])],
+    "P103": [
+        (arm("", base=inertial()), ["arm"]),
+        (arm(inertial(0, (0,) * 6), base=inertial(), extra=tip("")), ["arm"]),
+        (arm("", base=inertial(), extra=tip("", kind="revolute")), ["arm"]),
+    ],
     "P104": [(arm(inertial(1, (1, 2, 0, 1, 0, 1.5))), ["arm"])],
     "P105": [(arm(inertial(1, diagonal(1, 1, 3))), ["arm"])],
     "P106": [(arm(inertial(1, diagonal("0.1000", "0.2000", "0.3001"))), ["arm"])],
     "P107": [(arm(inertial(1, diagonal(0.1, 0.7, 0.8))), ["arm"]), (arm(inertial(1, diagonal(1, 1, 0))), ["arm"])],
-    "P108": [(arm(inertial(1, (0,) * 6)), ["arm"])],
+    "P108": [
+        (arm(inertial(1, (0,) * 6)), ["arm"]),
+        (arm("", extra=tip(inertial(1, (0,) * 6))), ["tip"]),
+        (arm(extra=tip(inertial(1, (0,) * 6))), []),
+    ],
+    "P109": [(arm(""), ["arm"]), (arm(inertial(0, (0,) * 6)), ["arm"])],
+    "P110": [
+        (arm(inertial(0, (0,) * 6) + DRAWN, extra=tip(inertial(), kind="revolute")), ["arm"]),
+        (arm(base=inertial(0, (0,) * 6) + DRAWN), ["base"]),
+        (arm(base=DRAWN), []),
+        (arm(DRAWN, extra=tip(inertial())), []),
+    ],
     "G201": [(box_arm(tensor=scaled(1e3)), ["arm"])],
     "G202": [(box_arm(tensor=scaled(1e-3)), ["arm"])],
     "G203": [(box_arm(MASS * 1e3, scaled(1e3)), ["arm"]), (box_arm(MASS * 1e-4, scaled(1e-4)), ["arm"])],
     "G204": [(box_arm(xyz="200 0 0"), ["arm"])],
-    "G205": [(box_arm(tensor=about_origin()), ["arm"])],
-    "G206": [(box_arm(tensor=swapped()), ["arm"])],
-    "G207": [(box_arm(tensor=scaled(factor)), ["arm"]) for factor in (1e3, 1e6, 1e9)],
+    "G205": [
+        (box_arm(tensor=tensor), ["arm"])
+        for tensor in (about_origin(), swapped(), scaled(1e3), scaled(1e6), scaled(1e9))
+    ],
     "G208": [(arm(inertial() + MESH), ["arm"])],
-    "T301": [(mirrored({"mass": 1}, {"mass": 1.01}), ["left_hand"])],
+    "G209": [
+        (arm(inertial(0.01, diagonal(1, 1, 1))), ["arm"]),
+        (arm(inertial(1, diagonal(1e-6, 1e-6, 1e-6))), ["arm"]),
+        (arm(inertial(1, diagonal(1e4, 1e4, 0), xyz="0.1 0 0")), ["arm"]),
+    ],
+    "G210": [(dense(density), where) for density, where in ((7850, ["arm"]), (1000, ["arm"]), (2700, []))],
+    "T301": [(mirrored({"mass": 1}, {"mass": 1.05}), ["left_hand"])],
     "T302": [
-        (mirrored({}, {"tensor": diagonal(1, 1, 1.01)}), ["left_hand"]),
+        (mirrored({}, {"tensor": diagonal(0.02, 0.02, 0.021)}), ["left_hand"]),
         (mirrored({"xyz": "0.1 0.2 0"}, {"xyz": "0.1 -0.21 0"}), ["left_hand"]),
     ],
+    "T303": [
+        (mirrored({"xyz": "0.1 0.2 0"}, {"xyz": "0.1 0.2 0"}, apart=0.1), ["left_hand"]),
+        (mirrored({"tensor": PRODUCTS}, {"tensor": PRODUCTS}, apart=0.1), ["left_hand"]),
+        (mirrored({"xyz": "0.1 0 0.2"}, {"xyz": "0.1 0 0.2"}, apart=0.1), []),
+        (mirrored(COPIED, COPIED, apart=0.1).replace("</inertial>", f"</inertial>{DRAWN}"), []),
+    ],
+    "T304": [(mirrored({"mass": 1}, {"mass": 1.005}), ["mirrored"])],
     "J401": [
         (arm(limit='<limit lower="0" upper="0" effort="1" velocity="1"/>'), ["swing"]),
         (arm(limit='<limit effort="1" velocity="1"/>', kind="prismatic"), ["swing"]),
@@ -247,21 +289,34 @@ def test_meshes_are_found_and_weighed(filename: str, place: str, tmp_path: Path)
     mesh = shape(f'<mesh filename="{filename}"/>', xyz=AT)
     good, bad = (arm(inertial(MASS, scaled(factor), xyz=AT) + mesh) for factor in (1, 1e9))
     assert inspect(rttrr_pin.load(good), folder).findings == ()
-    assert {found.id for found in inspect(rttrr_pin.load(bad), folder).findings} == {"G201", "G207"}
+    assert [(found.id, found.cause) for found in inspect(rttrr_pin.load(bad), folder).findings] == [("G205", "unit")]
+
+
+@pytest.mark.parametrize(("kept", "share"), [(12, 1.0), (10, 0.0)])
+def test_a_closed_mesh_has_a_volume(kept: int, share: float, tmp_path: Path) -> None:
+    """Scaled, and moved away from its origin; of a box without a lid nothing is known."""
+    import trimesh
+
+    box = trimesh.creation.box(extents=BOX)
+    box.apply_translation((5.0, -3.0, 2.0))
+    lid = np.argsort(box.triangles_center[:, 2])[:kept]
+    trimesh.Trimesh(box.vertices, box.faces[lid]).export(tmp_path / "box.stl")
+    link = read_document(arm(inertial() + shape('<mesh filename="box.stl" scale="2 1 -1"/>'))).links["arm"]
+    assert np.isclose(looks_of(link, tmp_path).filled, 2.0 * share * Box(BOX).volume)
 
 
 @pytest.mark.parametrize("content", [b"", b"no mesh", b"solid x\nfacet normal 1 2\n", bytes(200)])
 def test_a_damaged_mesh_leaves_the_geometry_unknown(content: bytes, tmp_path: Path) -> None:
     (tmp_path / "arm.stl").write_bytes(content)
     text = arm(inertial(MASS, scaled(1e9)) + shape('<mesh filename="arm.stl"/>'))
-    assert [found.id for found in inspect(rttrr_pin.load(text), tmp_path).findings] == ["G208"]
+    assert {found.id for found in inspect(rttrr_pin.load(text), tmp_path).findings} == {"G208", "G209"}
 
 
 @pytest.mark.parametrize(
     "tag", ["<box/>", '<box size="1 2"/>', '<sphere radius="-1"/>', '<box size="a b c"/>', "<capsule/>"]
 )
 def test_a_shape_that_is_none_leaves_the_geometry_unknown(tag: str) -> None:
-    assert found_by("G", arm(inertial(MASS, scaled(1e9)) + shape(tag))) == ["arm"]
+    assert {found.id for found in look(arm(inertial(MASS, scaled(1e9)) + shape(tag))).findings} == {"G208", "G209"}
 
 
 def test_no_name_of_a_mesh_breaks_the_search(tmp_path: Path) -> None:
@@ -282,8 +337,8 @@ def test_no_name_of_a_mesh_breaks_the_search(tmp_path: Path) -> None:
 REPAIRABLE = {
     "P106": arm(inertial(1, diagonal("0.1000", "0.2000", "0.3001"))),
     "P106, full tensor": arm(inertial(1, ("0.62961", "-0.12347", "0.07531", "0.37039", "0.24691", "0.84939"))),
-    "G205": box_arm(tensor=about_origin()),
-    "G207": box_arm(tensor=scaled(1e9)),
+    "G205, origin": box_arm(tensor=about_origin()),
+    "G205, unit": box_arm(tensor=scaled(1e9)),
 }
 
 
@@ -291,13 +346,13 @@ def look(text: str, select: Iterable[str] = ()) -> Inspection:
     return inspect(rttrr_pin.load(text), select=select)
 
 
-@pytest.mark.parametrize("name", ["P106", "G205", "G207"])
+@pytest.mark.parametrize("name", ["P106", "G205, origin", "G205, unit"])
 def test_a_repaired_file_passes(name: str) -> None:
     before = look(REPAIRABLE[name])
     repaired = repair(before)
-    assert [found.id for found in repaired.done] == [name]
+    assert [found.id for found in repaired.done] == [name.split(",")[0]]
     after = look(repaired.text)
-    assert name not in {found.id for found in after.findings}
+    assert name.split(",")[0] not in {found.id for found in after.findings}
     assert repair(after).done == ()
     rttrr_pin.load(repaired.text)
 
@@ -333,7 +388,7 @@ def test_only_the_values_change() -> None:
     assert repaired.text == expected != text
 
 
-@pytest.mark.parametrize("check", ["P101", "P102", "P104", "P105", "G206", "T301", "J401"])
+@pytest.mark.parametrize("check", ["P101", "P102", "P104", "P105", "T301", "J401"])
 def test_what_is_not_certain_is_left(check: str) -> None:
     """A negative mass is wrong, but which mass is right the file does not say."""
     text = CASES[check][0][0]
@@ -344,7 +399,8 @@ def test_what_is_not_certain_is_left(check: str) -> None:
 
 
 def test_a_factor_that_the_mass_may_explain_is_left() -> None:
-    """Inertia 1000 times too large for the mass: or the mass 1000 times too small."""
+    """Inertia 1000 times too large for the mass: or the mass 1000 times too small. Slots: or the drawing is turned."""
+    assert repair(look(box_arm(tensor=swapped()))).done == ()
     assert repair(look(box_arm(tensor=scaled(1e3)))).done == ()
     assert repair(look(box_arm(MASS * 1e-6, scaled(1.0)))).done == ()
 
@@ -387,7 +443,7 @@ def test_json_holds_the_whole_inspection(tmp_path: Path, capsys: pytest.CaptureF
     assert (data["schema"], data["passed"]) == (1, False)
     assert data["counts"] == {"error": 1, "warning": 0, "note": 0}
     (found,) = data["findings"]
-    assert set(found) == {"id", "severity", "kind", "name", "line", "value", "unit", "reason", "fix", "repair"}
+    assert set(found) == {"id", "severity", "kind", "name", "line", "value", "unit", "reason", "fix", "repair", "cause"}
     assert list(data["parsers"]) == list(PARSERS)
     assert data["parsers"]["MuJoCo"]["behaviour"] == "refuse"
     assert data["parsers"]["MuJoCo"]["rules"][0]["source"]

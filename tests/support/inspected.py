@@ -10,7 +10,7 @@ LIMIT = '<limit lower="-1" upper="1" effort="1" velocity="1"/>'
 
 
 def inertial(
-    mass: object = 1, tensor: Iterable[object] = (1, 0, 0, 1, 0, 1), xyz: str = "0 0 0", rpy: str = "0 0 0"
+    mass: object = 1, tensor: Iterable[object] = (0.02, 0, 0, 0.02, 0, 0.02), xyz: str = "0 0 0", rpy: str = "0 0 0"
 ) -> str:
     """tensor: ixx, ixy, ixz, iyy, iyz, izz, as texts or numbers."""
     entries = " ".join(f'{name}="{value}"' for name, value in zip(ENTRIES, tensor, strict=True))
@@ -56,10 +56,11 @@ def tip(inside: str, kind: str = "fixed", origin: str = '<origin xyz="0.1 0 0" r
     return f'<link name="tip">{inside}</link>' + joint("hold", "arm", "tip", kind, origin=origin, more=more)
 
 
-def mirrored(left: Mapping[str, object], right: Mapping[str, object]) -> str:
-    """Two links whose names differ in their side, each with the arguments of `inertial`."""
+def mirrored(left: Mapping[str, object], right: Mapping[str, object], apart: float = 0.0) -> str:
+    """Two links whose names differ in their side, each with the arguments of `inertial`; at y = apart and -apart."""
     links = "".join(
-        f'<link name="{side}_hand">{inertial(**numbers)}</link>' + joint(f"{side}_wrist", "base", f"{side}_hand")  # type: ignore[arg-type]
-        for side, numbers in (("left", left), ("right", right))
+        f'<link name="{side}_hand">{inertial(**numbers)}</link>'  # type: ignore[arg-type]
+        + joint(f"{side}_wrist", "base", f"{side}_hand", origin=f'<origin xyz="0 {y} 0"/>')
+        for side, numbers, y in (("left", left, apart), ("right", right, -apart))
     )
     return f'<robot name="mirrored"><link name="base"/>{links}</robot>'

@@ -51,6 +51,7 @@ class Finding:
         reason: what is wrong with it.
         fix: what to do about it.
         repair: the edits that mend it, where they are certain.
+        cause: the reading of the numbers that explains it, in one word such as `"decimal"`; empty where none is known.
     """
 
     id: str
@@ -63,6 +64,7 @@ class Finding:
     reason: str
     fix: str
     repair: tuple[Edit, ...] = ()
+    cause: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -99,6 +101,7 @@ class Observation:
     reason: str
     fix: str
     repair: tuple[Edit, ...] = ()
+    cause: str = ""
 
 
 KINDS = {UrdfLink: "link", UrdfJoint: "joint", UrdfDocument: "robot"}
@@ -126,7 +129,7 @@ class Check:
             line = 0 if isinstance(seen.at, UrdfDocument) else seen.at.line
             yield Finding(
                 self.id, self.severity, KINDS[type(seen.at)], seen.at.name, line,
-                seen.value, seen.unit, seen.reason, seen.fix, seen.repair,
+                seen.value, seen.unit, seen.reason, seen.fix, seen.repair, seen.cause,
             )  # fmt: skip
 
 

@@ -7,27 +7,40 @@ from pathlib import Path
 import click
 from rich.text import Text
 
+from rttrr_pin.errors import InputError
+from rttrr_pin.inspection import many
+from rttrr_pin.inspection.many import Demands, Entry, inspect_each
+from rttrr_pin.inspection.parsers import PARSERS
 from rttrr_pin.inspection.report import repair_data, repair_summary
-from rttrr_pin.inspection.run import inspect_document, repair
+from rttrr_pin.inspection.run import Inspection, inspect_document, repair
 from rttrr_pin.reporting.files import write_whole
-from rttrr_pin.reporting.options import check_targets, flag, outcome, robot
-from rttrr_pin.reporting.output import AGREE, DISAGREE, Output, write_json
+from rttrr_pin.reporting.options import check_targets, flag, outcome, robot, target
+from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json, write_text
 from rttrr_pin.urdf.parser import read_document
 from rttrr_pin.urdf.reader import model_of
+from rttrr_pin.urdf.sources import several
 
 
 @click.command
-@robot()
+@robot("A bundled robot's name, the path of a URDF, or example:NAME; several at once: a folder, example:all.")
 @click.option(
     "--select", multiple=True, metavar="ID", help="Only checks whose ids begin so, such as P or G201. Repeats."
 )
 @click.option("--ignore", multiple=True, metavar="ID", help="Leave out checks whose ids begin so. Repeats.")
 @flag("--strict", help="Warnings count as errors for the exit code.")
 @click.option(
+    "--fail-on",
+    multiple=True,
+    type=click.Choice(PARSERS, case_sensitive=False),
+    help="Fail also where this parser does not load the robot as written. Repeats.",
+)
+@click.option(
     "--fix",
     type=click.Path(path_type=Path),
     help="Write the file with the repairs that are certain; the rest stays as it is.",
 )
+@target("--sarif", "the findings as SARIF 2.1.0, for code hosts,")
+@target("--junit", "each check as a test in JUnit's XML, for CI servers,")
 @outcome
 @flag("--full", help="Show every link and every finding.")
 def inspect(
@@ -35,30 +48,57 @@ def inspect(
     select: tuple[str, ...],
     ignore: tuple[str, ...],
     strict: bool,
+    fail_on: tuple[str, ...],
     fix: Path | None,
+    sarif: str | None,
+    junit: str | None,
     json: str | None,
     quiet: bool,
     full: bool,
 ) -> int:
     """Look at a robot's file: its bodies, what is impossible or implausible, what other programs do with it.
 
-    Exit code: 0 no errors, 1 errors (with --strict also warnings), 2 unusable input.
+    Exit code: 0 no errors, 1 errors (with --strict also warnings, with --fail-on what a parser does), 2 unusable
+    input.
     """
-    check_targets({"--json": json}, [robot])
-    check_targets({"--json": json, "--fix": fix})
-    document = read_document(robot)
-    model_of(document)  # as `load` does: it refuses numbers that overflow
-    result = inspect_document(document, select=select, ignore=ignore)
-    repaired = None if fix is None else repair(result)
-    if fix is not None and repaired is not None:
-        write_whole(fix, repaired.text)
-    extra = {} if repaired is None else {"repair": repair_data(repaired)}
-    write_json(json, lambda: result.to_dict() | extra)
-    console = Output(quiet=quiet or json == "-", soft_wrap=True)
-    console.print(coloured(result.summary(full, console.width)))
-    if repaired is not None:
-        console.print(Text(repair_summary(repaired, str(fix))))
-    return AGREE if result.passes(strict) else DISAGREE
+    robots, demands = several(robot), Demands(strict, fail_on)
+    reports = {"--json": json, "--sarif": sarif, "--junit": junit}
+    check_targets(reports, robots.values() or [robot])
+    check_targets(reports | {"--fix": fix})
+    console = Output(quiet=quiet or "-" in reports.values(), soft_wrap=True)
+
+    def look(source: str | Path) -> Inspection:
+        document = read_document(source)
+        model_of(document)  # as `load` does: it refuses numbers that overflow
+        return inspect_document(document, select=select, ignore=ignore)
+
+    if robots:
+        if fix is not None or full:
+            raise InputError("--fix and --full go with one robot, and several are named: name one, or leave them out")
+        entries = []
+        with progress(len(robots), quiet, "robots") as advance:
+            for entry in inspect_each(robots, look):
+                entries.append(entry)
+                advance(len(entries))
+        write_json(json, lambda: many.to_dict(entries, demands))
+        console.print(coloured(many.summary(entries, demands, console.width)))
+    else:
+        result = look(robot)
+        repaired = None if fix is None else repair(result)
+        if fix is not None and repaired is not None:
+            write_whole(fix, repaired.text)
+        extra = {} if repaired is None else {"repair": repair_data(repaired)}
+        write_json(json, lambda: result.to_dict() | extra)
+        console.print(coloured(result.summary(full, console.width)))
+        for parser in demands.failing(result):
+            console.print(coloured(f"FAIL {parser} does not load the robot as written"))
+        if repaired is not None:
+            console.print(Text(repair_summary(repaired, str(fix))))
+        entries = [Entry(result.robot, Path(robot), result)]
+    write_json(sarif, lambda: many.sarif(entries, demands))
+    write_text(junit, lambda: many.junit(entries, demands))
+    verdicts = {entry.verdict(demands) for entry in entries}
+    return DISAGREE if "FAIL" in verdicts else UNUSABLE if "FILE" in verdicts else AGREE
 
 
 COLOURS = {

@@ -116,18 +116,19 @@ def _tensor(inertial: UrdfInertial) -> Matrix:
 
 
 @lru_cache(maxsize=4096)
-def nearest_possible(inertial: UrdfInertial) -> dict[str, Fraction] | None:
+def nearest_possible(inertial: UrdfInertial, coarse: bool = False) -> dict[str, Fraction] | None:
     """The entries of a tensor that a body can have and that rounds to the numbers written; None where none was found.
 
     Each entry may move by half a unit of its last digit, or by the rounding of double precision. The search is in
-    floating point; what it finds is checked exactly.
+    floating point; what it finds is checked exactly. With `coarse`, half units above `COARSE` count, too.
     """
     written = {name: number.exact for name, number in inertial.entries.items()}
     trace = sum((abs(written[name]) for name in DIAGONAL), Fraction(0))
     if any(abs(value) > trace for value in written.values()):
         return None
+    coarsest = trace if coarse else COARSE * trace
     may = {
-        name: number.half if DOUBLE * trace < number.half <= COARSE * trace else DOUBLE * trace * bool(number.exact)
+        name: number.half if DOUBLE * trace < number.half <= coarsest else DOUBLE * trace * bool(number.exact)
         for name, number in inertial.entries.items()
     }
     for shares in _searched(written, may):

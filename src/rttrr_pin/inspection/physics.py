@@ -8,8 +8,9 @@ from fractions import Fraction
 from rttrr_pin.inspection.bodies import principal
 from rttrr_pin.inspection.checks import Edit, Observation, Severity, Subject, check
 from rttrr_pin.inspection.exact import Shape, is_positive, nearest_possible, rank, shape
+from rttrr_pin.inspection.parser_rules import merged_links
 from rttrr_pin.urdf.decimals import text_of
-from rttrr_pin.urdf.document import UrdfInertial
+from rttrr_pin.urdf.document import NO_INERTIAL, UrdfInertial
 
 
 @check("P101", Severity.ERROR)
@@ -31,18 +32,29 @@ def tensor_without_mass(subject: Subject) -> Iterator[Observation]:
             )  # fmt: skip
 
 
-@check("P103", Severity.WARNING)
-def moving_without_mass(subject: Subject) -> Iterator[Observation]:
-    """Each moving joint moves some mass."""
+def _massive(subject: Subject) -> dict[str, bool]:
+    """For each link, whether there is mass on it or beyond."""
     document = subject.document
     massive = dict.fromkeys(document.links, False)
     massive |= {link.name: inertial.mass.exact != 0 for link, inertial in subject.inertials()}
     for _, name in reversed(list(document.walk())):
         massive[name] = massive[name] or any(massive[joint.child] for joint in document.children[name])
-    for joint in document.joints.values():
-        if joint.moves and not massive[joint.child]:
+    return massive
+
+
+@check("P103", Severity.WARNING)
+def moving_without_mass(subject: Subject) -> Iterator[Observation]:
+    """Each moving joint moves some mass, if the robot has any."""
+    document, massive = subject.document, _massive(subject)
+    told = set[str]()
+    for _, name in document.walk() if massive[document.root] else ():
+        joint = document.carried_by.get(name)
+        if joint is not None and joint.parent in told:
+            told.add(name)
+        elif joint is not None and joint.moves and not massive[name]:
+            told.add(name)
             yield Observation(
-                document.links[joint.child], 0.0, "kg",
+                document.links[name], 0.0, "kg",
                 f"joint {joint.name!r} moves it, but there is no mass on it or beyond: the mass matrix is singular",
                 "give it a mass and an inertia, or make the joint fixed",
             )  # fmt: skip
@@ -118,10 +130,40 @@ def boundary(subject: Subject) -> Iterator[Observation]:
 
 @check("P108", Severity.WARNING)
 def point_mass(subject: Subject) -> Iterator[Observation]:
-    """A link with mass has an inertia."""
-    for link, inertial in subject.inertials():
-        if shape(inertial) is Shape.POINT:
+    """A link with mass, together with what is fixed to it, has an inertia."""
+    links = subject.document.links
+    for name, merged in merged_links(subject.document).items():
+        if merged.mass > 0.0 and not merged.inertia.any():
+            massive = (links[each] for each in merged.members if (links[each].inertial or NO_INERTIAL).mass.exact)
             yield Observation(
-                link, float(inertial.mass), "kg", "there is a mass, but the inertia is zero: a point",
+                next(massive, links[name]), merged.mass, "kg", "there is a mass, but the inertia is zero: a point",
                 "write the inertia about the centre of mass",
+            )  # fmt: skip
+
+
+@check("P109", Severity.WARNING)
+def massless(subject: Subject) -> Iterator[Observation]:
+    """Some link has a mass."""
+    if not any(inertial.mass.exact for _, inertial in subject.inertials()):
+        yield Observation(
+            subject.document, 0.0, "kg",
+            f"none of the {len(subject.document.links)} links has a mass: every force and torque is zero",
+            "write an <inertial> for each body; a file for kinematics alone needs none",
+        )  # fmt: skip
+
+
+@check("P110", Severity.WARNING)
+def collides_without_mass(subject: Subject) -> Iterator[Observation]:
+    """A link that collides, together with what is fixed to it, has a mass, unless it is a base without <inertial>."""
+    document, massive = subject.document, _massive(subject)
+    for body in merged_links(document).values():
+        links = [document.links[name] for name in body.members]
+        colliding = [link for link in links if any(shape.role == "collision" for shape in link.shapes)]
+        has_mass = any((link.inertial or NO_INERTIAL).mass.exact for link in links)
+        meant = body.members[0] != document.root or any(link.inertial for link in links)
+        if colliding and meant and massive[body.members[0]] and not has_mass:
+            yield Observation(
+                colliding[0], 0.0, "kg",
+                "it collides, but has no mass: MuJoCo, Bullet and Isaac take one from its shapes, or refuse it",
+                "write its mass and inertia",
             )  # fmt: skip

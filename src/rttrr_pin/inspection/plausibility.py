@@ -1,31 +1,16 @@
-"""Checks against the link's geometry: numbers that some body has, but hardly this one."""
+"""Checks against the link's geometry and the robot's size: numbers that some body has, but hardly this one."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass
-from functools import lru_cache
-from itertools import permutations
+from collections.abc import Iterator
 
 import numpy as np
 
-from rttrr_pin.core.algebra import Vector
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.inertia import point_tensor
-from rttrr_pin.inspection.bodies import principal
-from rttrr_pin.inspection.checks import Edit, Observation, Severity, Subject, check
-from rttrr_pin.inspection.exact import DIAGONAL
-from rttrr_pin.inspection.shapes import Filled, Looks
-from rttrr_pin.urdf.document import ENTRIES, UrdfInertial, UrdfLink
-
-LARGEST_GYRATION = 1.5
-"""Radius of gyration over the distance of the farthest point drawn. No mass inside the drawing gives more than 1."""
-
-SMALLEST_GYRATION = 0.1
-"""The same; a homogeneous ball has 0.63, a rod about its middle 0.58, a heavy core in a wide cover seldom 0.15."""
-
-DENSITIES = (5.0, 25_000.0)
-"""Mass over the volume of the hull [kg/m^3]: an open frame, and above osmium (22,590)."""
+from rttrr_pin.inspection.cases import DENSITIES, Case, cases, ellipsoid_density
+from rttrr_pin.inspection.checks import Observation, Severity, Subject, check
+from rttrr_pin.inspection.parser_rules import merged_links
+from rttrr_pin.inspection.readings import LENGTH_UNITS, cause_of
 
 MARKER = 1e-8
 """Volume of the hull [m^3]: boxes of a millimetre or two are drawn for sensors that have no drawing."""
@@ -33,96 +18,61 @@ MARKER = 1e-8
 OUTSIDE = 0.5
 """How far the centre of mass may lie outside the box around the drawing, in half diagonals: motors often lack there."""
 
-UNITS = (
-    (1e9, "g mm^2"),
-    (1e7, "g cm^2"),
-    (1e6, "kg mm^2"),
-    (1e4, "kg cm^2"),
-    (1e3, "g m^2"),
-    (1e-3, "t m^2"),
-)
-"""1 kg m^2 is so many of them: a file written in that unit is too large by the factor."""
+DEFAULTS = {7850.0: "steel", 1000.0: "water"}
+"""Densities [kg/m^3] that CAD programs take where no material was chosen."""
 
-FAR, NEAR, EXACTLY = 0.5, 0.13, 1e-3
-"""Distances |I - solid| / |solid|: the file's tensor is not the solid's; another reading is; it is to the digits."""
-
-SURE_FAR = 0.02
-"""The file's distance from a box, cylinder or ball that another reading of the file meets exactly."""
+ALIKE, SEVERAL, MOST = 0.02, 3, 0.9
+"""How near densities are to such a one, relative (steel is 7800 to 8000); how many links must be, and what share of
+the mass."""
 
 
-@dataclass(frozen=True, eq=False)
-class Case:
-    """A link whose inertia can be compared with its geometry.
-
-    Attributes:
-        link: the link.
-        inertial: its <inertial>.
-        looks: its geometry.
-        mass: [kg].
-        gyration: the largest radius of gyration [m].
-        reach: from the centre of mass to the farthest point drawn [m].
-    """
-
-    link: UrdfLink
-    inertial: UrdfInertial
-    looks: Looks
-    mass: float
-    gyration: float
-    reach: float
-
-
-@lru_cache(maxsize=1)  # all checks of this file look at the same cases
-def _cases(subject: Subject) -> tuple[Case, ...]:
+def _drawn(subject: Subject) -> Iterator[Case]:
     """Links with mass, a tensor, and geometry that could be read."""
-    cases = []
-    for link, inertial in subject.inertials():
-        if inertial.mass.exact > 0 and not inertial.is_zero and (looks := subject.looks(link)).known:
-            mass = float(inertial.mass)
-            gyration = float(np.sqrt(max(principal(inertial.tensor)[0][-1], 0.0) / mass))
-            reach = float(np.linalg.norm(looks.points - inertial.origin.p, axis=1).max())
-            cases.append(Case(link, inertial, looks, mass, gyration, reach))
-    return tuple(cases)
+    return (case for case in cases(subject).values() if case.drawn)
 
 
 @check("G201", Severity.WARNING)
 def too_wide(subject: Subject) -> Iterator[Observation]:
     """The radius of gyration is within the link's geometry."""
-    for case in _cases(subject):
-        if case.gyration > LARGEST_GYRATION * case.reach:
+    for case in _drawn(subject):
+        if case.wide:
             yield Observation(
                 case.link, case.gyration, "m",
                 f"the radius of gyration is {case.gyration:.3g} m, but nothing is drawn farther than "
-                f"{case.reach:.3g} m from the centre of mass",
-                "check the inertia's unit (kg m^2), and that mass and inertia belong together" + _unit_hint(case),
+                f"{case.reach:.3g} m from the centre of mass{_about_axis(subject, case)}",
+                "check the inertia's unit (kg m^2), and that mass and inertia belong together",
             )  # fmt: skip
+
+
+def _about_axis(subject: Subject, case: Case) -> str:
+    """What a fixed base feels of a link on its first joint."""
+    document = subject.document
+    joint = document.carried_by.get(case.link.name)
+    anchored = merged_links(document)[document.root].members
+    if joint is None or joint.type not in ("revolute", "continuous") or joint.parent not in anchored:
+        return ""
+    axis = np.array(joint.axis.floats) / np.linalg.norm(joint.axis.floats)
+    gyration = np.sqrt(max(axis @ case.inertial.inertia @ axis, 0.0) / case.mass)
+    return f"; on a fixed base only the moment about {joint.name} counts, and its radius is {gyration:.3g} m"
 
 
 @check("G202", Severity.WARNING)
 def too_narrow(subject: Subject) -> Iterator[Observation]:
-    """The radius of gyration is at least a tenth of the link's reach."""
-    for case in _cases(subject):
-        if case.gyration < SMALLEST_GYRATION * case.reach:
+    """The radius of gyration is at least a tenth of the drawing's radius."""
+    for case in _drawn(subject):
+        if case.narrow:
             yield Observation(
                 case.link, case.gyration, "m",
-                f"the radius of gyration is {case.gyration:.3g} m, but the link is drawn up to {case.reach:.3g} m from "
-                "the centre of mass: nearly all mass would sit in the middle",
-                "check the inertia's unit (kg m^2) and for placeholders such as 1e-6" + _unit_hint(case),
+                f"the radius of gyration is {case.gyration:.3g} m, but the link is drawn with a radius of "
+                f"{case.radius:.3g} m: nearly all mass would sit in the middle",
+                "check the inertia's unit (kg m^2) and for placeholders such as 1e-6",
             )  # fmt: skip
-
-
-def _unit_hint(case: Case) -> str:
-    """The unit in which the file's tensor would suit the hull, if there is one."""
-    if not case.looks.solids:
-        return ""
-    ratio = float(np.trace(case.inertial.tensor) / np.trace(case.looks.solids[-1].inertia(case.mass)))
-    fitting = [unit for factor, unit in UNITS if 1 / 3 < ratio / factor < 3]
-    return f"; in {fitting[0]} it would suit" if fitting else ""
 
 
 @check("G203", Severity.WARNING)
 def density(subject: Subject) -> Iterator[Observation]:
     """The mass over the volume of the hull is a density that things have."""
-    for case in _cases(subject):
+    for case in _drawn(subject):
         if case.looks.volume < MARKER:
             continue
         value = case.mass / case.looks.volume
@@ -139,120 +89,44 @@ def density(subject: Subject) -> Iterator[Observation]:
 @check("G204", Severity.WARNING)
 def com_outside(subject: Subject) -> Iterator[Observation]:
     """The centre of mass lies in or near the link's geometry."""
-    for case in _cases(subject):
+    for case in _drawn(subject):
         low, high = case.looks.points.min(axis=0), case.looks.points.max(axis=0)
         com = case.inertial.origin.p
         away = float(np.linalg.norm(np.maximum(np.maximum(low - com, com - high), 0.0)))
         size = float(np.linalg.norm(high - low)) / 2
         if away > OUTSIDE * size:
+            cause, sentence = _misplaced(com, low, high)
             yield Observation(
                 case.link, away, "m",
                 f"the centre of mass lies {away:.3g} m outside the box around the geometry, whose half diagonal is "
-                f"{size:.3g} m",
+                f"{size:.3g} m{sentence}",
                 "check the <origin> of the <inertial>: its unit (m), its sign, and that it is in the link's frame",
+                cause=cause,
             )  # fmt: skip
 
 
-@dataclass(frozen=True, eq=False)
-class Reading:
-    """Another meaning of the numbers written.
-
-    Attributes:
-        written: the tensor that would have to be written, in the inertial frame, (3, 3) [kg m^2].
-        meaning: how the numbers would have to be understood.
-        sure: whether nothing else explains an exact match: a factor of 1000 may be the mass's, slots the drawing's.
-    """
-
-    written: Array
-    meaning: str
-    sure: bool = True
-
-
-def _misread(
-    subject: Subject, readings: Callable[[UrdfInertial], Iterator[Reading]], fix: str
-) -> Iterator[Observation]:
-    """Links whose tensor suits their solid only in another reading."""
-    for case in _cases(subject):
-        best = _best(case, list(readings(case.inertial)))
-        if best is not None:
-            reading, solid, off, gap = best
-            plausible = DENSITIES[0] <= case.mass / solid.body.mass <= DENSITIES[1]
-            sure = plausible and solid.exact and gap < EXACTLY and reading.sure
-            yield Observation(
-                case.link, off, "",
-                f"the inertia differs from that of {solid.label} by {off:.3g} of it, and by {gap:.2g} if it is "
-                f"{reading.meaning}",
-                fix, _rewrite(case, reading) if sure else (),
-            )  # fmt: skip
-
-
-def _best(case: Case, readings: list[Reading]) -> tuple[Reading, Filled, float, float] | None:
-    """The reading that comes nearest to a solid; None where the file's own numbers suit one, or no reading does."""
-    solids = [(solid, solid.inertia(case.mass)) for solid in case.looks.solids]
-    offs = [_distance(case.inertial.inertia, wanted) for _, wanted in solids]
-    R, best = case.inertial.origin.R, None
-    for (solid, wanted), off in zip(solids, offs, strict=True):
-        for reading in readings:
-            gap = _distance(R @ reading.written @ R.T, wanted)
-            clear = (gap < NEAR and min(offs) > FAR) or (solid.exact and gap < EXACTLY and min(offs) > SURE_FAR)
-            if clear and (best is None or gap < best[3]):
-                best = (reading, solid, off, gap)
-    return best
-
-
-def _distance(x: Array, wanted: Array) -> float:
-    """|x - wanted| / |wanted|."""
-    return float(np.linalg.norm(x - wanted) / np.linalg.norm(wanted))
-
-
-def _rewrite(case: Case, reading: Reading) -> tuple[Edit, ...]:
-    """The tensor as it would have to be written."""
-    small = 1e-12 * float(np.abs(reading.written).max())
-    values = {name: float(reading.written[at]) for name, at in ENTRIES.items()}
-    return tuple(
-        Edit(case.link.name, "inertia", name, f"{0.0 if abs(value) < small else value:.9g}")
-        for name, value in values.items()
-        if value != float(case.inertial.entries[name])
-    )
+def _misplaced(com: Array, low: Array, high: Array) -> tuple[str, str]:
+    """The one slip that explains a centre of mass outside a box, and what to say of it."""
+    if not com.any():
+        return "zero", "; it is the link's origin, as if the <origin> were missing"
+    meant = {("unit", f"in {name}"): com * factor for name, factor in LENGTH_UNITS.items()}
+    meant |= {("sign", f"with the other sign of {'xyz'[k]}"): com * (1 - 2 * np.eye(3)[k]) for k in range(3)}
+    inside = [cause for cause, point in meant.items() if (low <= point).all() and (point <= high).all()]
+    return (inside[0][0], f"; {inside[0][1]} it would be inside") if len(inside) == 1 else ("", "")
 
 
 @check("G205", Severity.WARNING)
-def about_origin(subject: Subject) -> Iterator[Observation]:
-    """The inertia is about the centre of mass, not about the link's origin."""
-
-    def readings(inertial: UrdfInertial) -> Iterator[Reading]:
-        """I - m (c.c 1 - c c^T) is about the centre of mass."""
-        c, R = inertial.origin.p, inertial.origin.R
-        if c.any():
-            shifted = inertial.inertia - float(inertial.mass) * point_tensor(Vector.of(c)).array
-            yield Reading(R.T @ shifted @ R, "about the link's origin and not about the centre of mass")
-
-    return _misread(subject, readings, "subtract m (c.c 1 - c c^T), the parallel-axis term")
-
-
-@check("G206", Severity.WARNING)
-def swapped(subject: Subject) -> Iterator[Observation]:
-    """ixx, iyy, izz stand in their own slots."""
-
-    def readings(inertial: UrdfInertial) -> Iterator[Reading]:
-        for order in list(permutations(range(3)))[1:]:
-            written = inertial.tensor.copy()
-            written[range(3), range(3)] = inertial.tensor.diagonal()[list(order)]
-            names = ", ".join(DIAGONAL[k] for k in order)
-            yield Reading(written, f"in the wrong slots: ixx, iyy, izz hold what belongs to {names}", sure=False)
-
-    return _misread(subject, readings, "write each moment into its own slot, or the rpy that the inertial frame lacks")
-
-
-@check("G207", Severity.WARNING)
-def wrong_power(subject: Subject) -> Iterator[Observation]:
-    """The inertia is in kg m^2."""
-
-    def readings(inertial: UrdfInertial) -> Iterator[Reading]:
-        for factor, unit in UNITS:
-            yield Reading(inertial.tensor / factor, f"in {unit} and not in kg m^2", sure=factor >= 1e6)
-
-    return _misread(subject, readings, "write the inertia in kg m^2")
+def misread(subject: Subject) -> Iterator[Observation]:
+    """The inertia is not that of the link's shape in another unit, order, sign or frame, or with other digits."""
+    for case in _drawn(subject):
+        cause = cause_of(case) if case.unlike else None
+        if cause is not None and cause.solid:
+            yield Observation(
+                case.link, min(case.distances), "", f"the inertia differs from that of {cause.solid} by "
+                f"{min(case.distances):.3g} of it",
+                "write the inertia about the centre of mass in kg m^2, in the axes of the inertial frame, each number "
+                "in its own slot",
+            )  # fmt: skip
 
 
 @check("G208", Severity.NOTE)
@@ -268,3 +142,36 @@ def unknown(subject: Subject) -> Iterator[Observation]:
             f"not compared with their geometry, whose meshes were not found: {shown}",
             "inspect the file where its meshes lie",
         )  # fmt: skip
+
+
+@check("G209", Severity.WARNING)
+def implausible(subject: Subject) -> Iterator[Observation]:
+    """A link whose geometry is not known has the radius of gyration of a thing that could be part of the robot."""
+    for case in cases(subject).values():
+        if case.possible and not case.drawn and (case.wide or case.narrow):
+            density = ellipsoid_density(case.mass, case.moments)
+            like = "" if np.isnan(density) else f"; the ellipsoid with this mass and inertia has {density:.2g} kg/m^3"
+            yield Observation(
+                case.link, case.gyration, "m",
+                f"the radius of gyration is {case.gyration:.3g} m in a robot whose joints and centres of mass lie "
+                f"within {case.extent:.3g} m{like}",
+                "check the inertia's unit (kg m^2), the mass's (kg), and for placeholders",
+            )  # fmt: skip
+
+
+@check("G210", Severity.WARNING)
+def one_density(subject: Subject) -> Iterator[Observation]:
+    """Not all links have the density that a CAD program takes where no material was chosen."""
+    filled = [(float(inertial.mass), subject.looks(link).filled) for link, inertial in subject.inertials()]
+    known = np.array([(mass, volume) for mass, volume in filled if mass > 0.0 and volume > MARKER]).reshape(-1, 2)
+    densities = known[:, 0] / known[:, 1]
+    for density, material in DEFAULTS.items():
+        alike = np.abs(densities / density - 1.0) < ALIKE
+        if alike.sum() >= SEVERAL and known[alike, 0].sum() > MOST * known[:, 0].sum():
+            yield Observation(
+                subject.document, float(np.median(densities[alike])), "kg/m^3",
+                f"{alike.sum()} of {len(known)} links whose volume is known are as dense as {material}, which CAD "
+                "programs take where no material was chosen",
+                "choose the materials of the parts in the CAD program, and export again",
+                cause="density",
+            )  # fmt: skip

@@ -99,13 +99,17 @@ def _link_data(link: LinkRow) -> dict[str, Any]:
 def _tree(links: Sequence[LinkRow], width: int) -> Iterator[str]:
     """The table of links; the only link on another stands below it, of several each is marked and indented."""
     labels = list(_labels(links))
-    rows = [(label, *_cells(link)) for label, link in zip(labels, links, strict=True)]
-    widths = [max(map(len, column)) for column in zip(HEADS, *rows, strict=True)]
-    columns = len(HEADS)
-    while columns > 2 and sum(widths[:columns]) + 2 * (columns - 1) > width:
-        columns -= 1
-    for row in (HEADS, *rows):
-        yield "  ".join(cell.ljust(size) for cell, size in zip(row[:columns], widths, strict=False)).rstrip()
+    return columns(HEADS, [(label, *_cells(link)) for label, link in zip(labels, links, strict=True)], width)
+
+
+def columns(heads: tuple[str, ...], rows: Sequence[tuple[str, ...]], width: int) -> Iterator[str]:
+    """A table without the columns that do not fit, the first two whole in any case."""
+    widths = [max(map(len, column)) for column in zip(heads, *rows, strict=True)]
+    fitting = len(heads)
+    while fitting > 2 and sum(widths[:fitting]) + 2 * (fitting - 1) > width:
+        fitting -= 1
+    for row in (heads, *rows):
+        yield "  ".join(cell.ljust(size) for cell, size in zip(row[:fitting], widths, strict=False)).rstrip()
 
 
 def _labels(links: Sequence[LinkRow]) -> Iterator[str]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,8 +17,11 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.errors import InputError, UnknownNameError
 from rttrr_pin.inspection import physics, plausibility, report, structure
 from rttrr_pin.inspection.bodies import LinkRow, centre_of_mass, tree
+from rttrr_pin.inspection.cases import cases
 from rttrr_pin.inspection.checks import Check, Edit, Finding, Severity, Subject
+from rttrr_pin.inspection.parser_rules import merged_links
 from rttrr_pin.inspection.parsers import Verdict, verdicts
+from rttrr_pin.inspection.readings import cause_of
 from rttrr_pin.urdf.document import UrdfDocument
 
 if TYPE_CHECKING:
@@ -132,7 +135,7 @@ def inspect_document(
     checks = _chosen(tuple(select), tuple(ignore))
     subject = Subject(document, document.folder if folder is None else Path(folder))
     with np.errstate(all="ignore"):  # 1e308 is a number; what overflows is shown as inf, and no verdict rests on it
-        findings = [finding for check in checks for finding in check.findings(subject)]
+        findings = _once(_explained(subject, finding) for check in checks for finding in check.findings(subject))
         links = tuple(tree(document))
         mass = sum(link.mass for link in links)
         return Inspection(
@@ -144,6 +147,57 @@ def inspect_document(
             verdicts=verdicts(document),
             text=document.text,
         )
+
+
+OF_TENSOR = ("P102", "P104", "P105", "G205", "P106", "G201", "G202", "G209", "P108", "P107")
+"""Checks of the six numbers of one tensor, the telling ones first."""
+
+SMALL_SHARE = 0.01
+"""Of a body, what hardly changes a torque."""
+
+OF_LINK = (("P102", "P103", "P110"), ("G205", "G203"), OF_TENSOR)
+"""Of each of these groups a link has one finding, the first: no mass, another mass, another tensor than is meant."""
+
+OF_PLACEHOLDER = (*OF_TENSOR, "P103", "P110", "G203", "G204")
+"""Of a placeholder there is nothing more to say."""
+
+
+def _explained(subject: Subject, finding: Finding) -> Finding:
+    """With the cause of a tensor's finding, where there is one."""
+    case = cases(subject).get(finding.name) if finding.id in OF_TENSOR else None
+    cause = None if case is None else cause_of(case)
+    if cause is not None:
+        repair, reason = cause.repair or finding.repair, f"{finding.reason}; {cause.sentence}"
+        finding = replace(finding, reason=reason, cause=cause.name, repair=repair)
+    if finding.severity is Severity.WARNING and finding.id in OF_PLACEHOLDER and _negligible(subject, finding.name):
+        finding = replace(finding, severity=Severity.NOTE)
+    return finding
+
+
+def _negligible(subject: Subject, name: str) -> bool:
+    """Whether mass and tensor of a link are a small share of those of the body that it is fixed to."""
+    inertial = subject.document.links[name].inertial
+    body = next(body for body in merged_links(subject.document).values() if name in body.members)
+    return inertial is not None and bool(
+        0.0 < float(inertial.mass) < SMALL_SHARE * body.mass
+        and np.abs(inertial.tensor).max() < SMALL_SHARE * np.trace(body.inertia)
+    )
+
+
+def _once(findings: Iterable[Finding]) -> list[Finding]:
+    """Without those of which a telling one of the same group is said of the same link."""
+    everything = list(findings)
+    ids: dict[str, set[str]] = {finding.name: set() for finding in everything}
+    for finding in everything:
+        ids[finding.name].add(finding.id)
+    placeholders = {finding.name for finding in everything if finding.cause == "placeholder"}
+
+    def covered(finding: Finding) -> bool:
+        groups = (OF_PLACEHOLDER,) if finding.name in placeholders else OF_LINK
+        before = [group[: group.index(finding.id)] for group in groups if finding.id in group]
+        return any(id in ids[finding.name] for group in before for id in group)
+
+    return [finding for finding in everything if not covered(finding)]
 
 
 def _chosen(select: tuple[str, ...], ignore: tuple[str, ...]) -> list[Check]:

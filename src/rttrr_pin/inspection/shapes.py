@@ -30,6 +30,9 @@ LARGEST_MESH = 64 * 2**20
 SMALLEST, LARGEST = 1e-9, 1e9
 """Metres; what is drawn smaller or larger, or elsewhere, is no robot, and its volume may be no float."""
 
+CLOSED = 1e-3
+"""Sum of the areas of a mesh, as vectors, over that of their sizes: an open one has more."""
+
 AROUND = 24
 """Points on a circle; the circle through them is drawn around, so that the hull contains the cylinder or ball."""
 
@@ -61,11 +64,13 @@ class Looks:
         points: of the hull of all shapes, (N, 3) [m], in the link frame; empty where nothing is known.
         volume: of that hull [m^3]; 0 where it is flat or unknown.
         solids: what the link would be if its shapes were filled.
+        filled: volume of the visuals, or else of the collision shapes, themselves [m^3]; 0 where one is not closed.
         missing: meshes that could not be read.
     """
 
     points: Array
     volume: float = 0.0
+    filled: float = 0.0
     solids: tuple[Filled, ...] = ()
     missing: tuple[str, ...] = ()
 
@@ -83,10 +88,12 @@ def looks_of(link: UrdfLink, folder: Path | None) -> Looks:
         folder: where the URDF lies; None for a text, whose meshes cannot be found.
     """
     clouds: dict[str, list[Array]] = {"visual": [], "collision": []}
+    volumes: dict[str, list[float]] = {"visual": [], "collision": []}
     missing, solids = [], dict[str, Filled]()
     for shape in link.shapes:
         solid = _primitive(shape)
-        points = _mesh_points(shape, folder) if solid is None else _outline(solid)
+        points, volume = _mesh(shape, folder) if solid is None else (_outline(solid), solid.volume)
+        volumes[shape.role].append(volume)
         if len(points) and solid is not None and sum(other.role == shape.role for other in link.shapes) == 1:
             body = RigidBody.of(solid, 1.0).placed(shape.origin.xyz.floats, shape.origin.rpy.floats)
             solids[shape.role] = Filled(f"the {shape.role} {shape.tag}", body, True)
@@ -97,11 +104,13 @@ def looks_of(link: UrdfLink, folder: Path | None) -> Looks:
     hulls = {role: _hull(role, cloud) for role, cloud in clouds.items() if cloud}
     everything = [points for cloud in clouds.values() for points in cloud]
     whole = _hull("link", everything) if everything else None
+    parts = volumes["visual"] or volumes["collision"]
     approximate = [hull for role, hull in hulls.items() if hull is not None and role not in solids]
     return Looks(
         points=np.concatenate(everything) if everything else np.zeros((0, 3)),
         volume=0.0 if whole is None else whole.body.mass,
         solids=(*solids.values(), *approximate),
+        filled=sum(parts) if all(parts) else 0.0,
         missing=tuple(dict.fromkeys(missing)),
     )
 
@@ -146,21 +155,22 @@ def _filled(points: bytes) -> RigidBody | None:
     return filled_hull(np.frombuffer(points).reshape(-1, 3).copy())
 
 
-def _mesh_points(shape: UrdfShape, folder: Path | None) -> Array:
-    """The corners of a mesh's hull, scaled; none where it cannot be read."""
+def _mesh(shape: UrdfShape, folder: Path | None) -> tuple[Array, float]:
+    """The corners of a mesh's hull and the mesh's volume, scaled; no corners where it cannot be read."""
     path = None if folder is None or shape.tag != "mesh" else find_mesh(shape.attributes.get("filename", ""), folder)
     try:
-        scale = [float(word) for word in shape.attributes.get("scale", "1 1 1").split()]
+        scale = np.array([float(word) for word in shape.attributes.get("scale", "1 1 1").split()])
     except ValueError:
         path = None
     if path is None:
-        return np.zeros((0, 3))
-    return load_corners(path) * (np.array(scale) if len(scale) == 3 else 1.0)
+        return np.zeros((0, 3)), 0.0
+    corners, volume = load_mesh(path)
+    return (corners * scale, volume * float(abs(scale.prod()))) if len(scale) == 3 else (corners, volume)
 
 
 @lru_cache(maxsize=512)
-def load_corners(path: Path) -> Array:
-    """The corners of a mesh's hull, (N, 3) [m]; none where it cannot be read."""
+def load_mesh(path: Path) -> tuple[Array, float]:
+    """The corners of a mesh's hull, (N, 3) [m], none where it cannot be read; its volume [m^3], 0 where it is open."""
     import trimesh  # slow to import, as SciPy is: robots without meshes do without
     from scipy.spatial import ConvexHull
 
@@ -174,12 +184,22 @@ def load_corners(path: Path) -> Array:
             if mesh.units not in (None, "m", "meter", "meters"):
                 mesh.convert_units("meters")
             points = np.asarray(mesh.vertices, dtype=np.float64)
-            points = points[np.isfinite(points).all(axis=1)]
-            return points[ConvexHull(points).vertices] if len(points) > 100 else points
+            finite = points[np.isfinite(points).all(axis=1)]
+            corners = finite[ConvexHull(finite).vertices] if len(finite) > 100 else finite
+            return corners, _enclosed(points[np.asarray(mesh.faces)])
     except Exception:  # whatever a damaged mesh does to its reader, inspection goes on without it
-        return np.zeros((0, 3))
+        return np.zeros((0, 3)), 0.0
     finally:
         logger.setLevel(level)
+
+
+def _enclosed(triangles: Array) -> float:
+    """The volume inside a surface [m^3]; 0 where it is open, so that its areas do not add up to zero."""
+    a, b, c = np.moveaxis(triangles - triangles.mean(axis=(0, 1)), 1, 0)
+    areas = np.cross(b - a, c - a)
+    if not np.linalg.norm(areas.sum(axis=0)) < CLOSED * np.linalg.norm(areas, axis=1).sum():
+        return 0.0
+    return abs(float(np.einsum("ij,ij->", a, np.cross(b, c)))) / 6.0
 
 
 def find_mesh(filename: str, folder: Path) -> Path | None:

@@ -7,16 +7,22 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.inspection.bodies import principal
 from rttrr_pin.inspection.checks import Observation, Severity, Subject, check
 from rttrr_pin.urdf.document import UrdfInertial, UrdfJoint, UrdfLink
 
-ALIKE = 1e-3
-"""Relative: CAD programs write three digits at least, and mirrored parts have the same ones."""
+ALIKE, SLIGHT = 1e-3, 1e-2
+"""Relative: CAD programs write three digits at least, and mirrored parts have the same ones; a screw more is one
+percent."""
+
+LOPSIDED = 0.05
+"""By how much, relative, a body differs from its own mirror image, so that a copy of it is not one."""
 
 SIDES = {"left": "right", "l": "r", "fl": "fr", "hl": "hr", "bl": "br", "rl": "rr", "lf": "rf", "lh": "rh", "lb": "rb"}
 OTHER = SIDES | {right: left for left, right in SIDES.items()}
@@ -42,8 +48,32 @@ def _same_case(word: str, like: str) -> str:
     return word.capitalize() if like[0].isupper() else word
 
 
-def _pairs(subject: Subject) -> Iterator[tuple[UrdfLink, UrdfLink, tuple[float, float, float]]]:
-    """Pairs that both have mass, the first of the file first; of several possible mirror images the most alike."""
+@dataclass(frozen=True, eq=False)
+class Pair:
+    """A link and its mirror image, both with a mass.
+
+    Attributes:
+        link: the one that stands first in the file.
+        image: the other.
+        mass: relative difference of the masses.
+        inertia: of the principal moments.
+        com: of the centre of mass's distance from the link's origin.
+    """
+
+    link: UrdfLink
+    image: UrdfLink
+    mass: float
+    inertia: float
+    com: float
+
+    @property
+    def worst(self) -> float:
+        """The largest of the three."""
+        return max(self.mass, self.inertia, self.com)
+
+
+def _pairs(subject: Subject) -> Iterator[Pair]:
+    """Pairs that both have an <inertial>, the first of the file first; of several possible images the most alike."""
     inertials = dict(subject.inertials())
     seen, links = set[str](), subject.document.links
     for name, link in links.items():
@@ -51,16 +81,13 @@ def _pairs(subject: Subject) -> Iterator[tuple[UrdfLink, UrdfLink, tuple[float, 
         mirrored = [links[other] for other in other_side(name) if other in links]
         if link not in inertials or any(other.name in seen for other in mirrored):
             continue
-        differences = {
-            other: _difference(inertials[link], inertials[other]) for other in mirrored if other in inertials
-        }
-        if differences:
-            image = min(differences, key=differences.__getitem__)
-            yield link, image, differences[image]
+        pairs = [_pair(link, other, inertials) for other in mirrored if other in inertials]
+        if pairs:
+            yield min(pairs, key=lambda pair: (pair.mass, pair.inertia, pair.com))
 
 
-def _difference(one: UrdfInertial, other: UrdfInertial) -> tuple[float, float, float]:
-    """Relative differences of mass, of principal moments, and of the centre of mass's distance from the origin."""
+def _pair(link: UrdfLink, image: UrdfLink, inertials: Mapping[UrdfLink, UrdfInertial]) -> Pair:
+    one, other = inertials[link], inertials[image]
     moments = [principal(inertial.tensor)[0] for inertial in (one, other)]
     reach = [float(np.linalg.norm(inertial.origin.p)) for inertial in (one, other)]
     gaps = (
@@ -68,34 +95,86 @@ def _difference(one: UrdfInertial, other: UrdfInertial) -> tuple[float, float, f
         (float(np.abs(moments[0] - moments[1]).max()), float(np.abs(moments).max())),
         (abs(reach[0] - reach[1]), max(reach)),
     )
-    mass, inertia, com = (gap / size if size else 0.0 for gap, size in gaps)
-    return mass, inertia, com
+    return Pair(link, image, *(gap / size if size else 0.0 for gap, size in gaps))
 
 
 @check("T301", Severity.WARNING)
 def mass_differs(subject: Subject) -> Iterator[Observation]:
-    """Left and right links have the same mass."""
+    """Left and right links have the same mass, to 1 percent."""
     inertials = dict(subject.inertials())
-    for link, image, (mass, _, _) in _pairs(subject):
-        if mass > ALIKE:
-            a, b = float(inertials[link].mass), float(inertials[image].mass)
+    for pair in _pairs(subject):
+        if pair.mass > SLIGHT:
+            a, b = float(inertials[pair.link].mass), float(inertials[pair.image].mass)
             yield Observation(
-                link, a - b, "kg", f"its mass is {a:.6g} kg, that of its mirror image {image.name!r} {b:.6g} kg",
+                pair.link, a - b, "kg",
+                f"its mass is {a:.6g} kg, that of its mirror image {pair.image.name!r} {b:.6g} kg",
                 "find out which of the two is right, and write it for both",
             )  # fmt: skip
 
 
 @check("T302", Severity.WARNING)
 def shape_differs(subject: Subject) -> Iterator[Observation]:
-    """Left and right links are mirror images."""
-    for link, image, (mass, inertia, com) in _pairs(subject):
-        if mass <= ALIKE and max(inertia, com) > ALIKE:
-            parts = (("principal moments", inertia), ("distance of the centre of mass from the origin", com))
-            differing = " and ".join(f"{what} (by {gap:.2g} of it)" for what, gap in parts if gap > ALIKE)
+    """Left and right links have the same principal moments and distance of the centre of mass, to 1 percent."""
+    for pair in _pairs(subject):
+        if pair.mass <= SLIGHT < pair.worst:
+            parts = (("principal moments", pair.inertia), ("distance of the centre of mass from the origin", pair.com))
+            differing = " and ".join(f"{what} (by {gap:.2g} of it)" for what, gap in parts if gap > SLIGHT)
             yield Observation(
-                link, max(inertia, com), "", f"it differs from its mirror image {image.name!r} in {differing}",
+                pair.link, pair.worst, "", f"it differs from its mirror image {pair.image.name!r} in {differing}",
                 "mirror images have the same: compute both anew",
             )  # fmt: skip
+
+
+@check("T303", Severity.WARNING)
+def copied(subject: Subject) -> Iterator[Observation]:
+    """Left and right links whose frames are parallel are mirror images, and not copies."""
+    inertials, placements = dict(subject.inertials()), subject.document.placements
+    for pair in _pairs(subject):
+        (R, p), (other_R, other_p) = placements[pair.link.name], placements[pair.image.name]
+        across = float(np.linalg.norm(p - other_p))
+        if pair.worst > ALIKE or not across or not np.allclose(R, other_R, atol=ALIKE) or _same_part(pair):
+            continue
+        normal = R.T @ (p - other_p) / across
+        mirror = np.eye(3) - 2.0 * np.outer(normal, normal)
+        c, other_c = inertials[pair.link].origin.p, inertials[pair.image].origin.p
+        J, other_J = inertials[pair.link].inertia, inertials[pair.image].inertia
+        same = max(_apart(c, other_c), _apart(J, other_J)) < ALIKE
+        lopsided = max(_apart(c, mirror @ c), _apart(J, mirror @ J @ mirror))
+        if same and lopsided > LOPSIDED:
+            yield Observation(
+                pair.link, lopsided, "",
+                f"it has the numbers of {pair.image.name!r} copied, not mirrored: the frames are parallel, and across "
+                "the plane between them centre of mass and products of inertia change sign",
+                "mirror one of the two, or leave them if both are the same part, mounted the same way",
+                cause="copied",
+            )  # fmt: skip
+
+
+def _same_part(pair: Pair) -> bool:
+    """Whether both are drawn, and drawn alike."""
+    drawings = [
+        [(shape.tag, shape.attributes, shape.origin.xyz.floats, shape.origin.R.tolist()) for shape in link.shapes]
+        for link in (pair.link, pair.image)
+    ]
+    return drawings[0] == drawings[1] != []
+
+
+def _apart(x: Array, y: Array) -> float:
+    """|x - y| / |x|."""
+    size = float(np.linalg.norm(x))
+    return float(np.linalg.norm(x - y)) / size if size else 0.0
+
+
+@check("T304", Severity.NOTE)
+def differs_slightly(subject: Subject) -> Iterator[Observation]:
+    """Left and right links do not differ at all, where they differ by less than 1 percent."""
+    pairs = [pair for pair in _pairs(subject) if ALIKE < pair.worst <= SLIGHT]
+    if pairs:
+        shown = ", ".join(pair.link.name for pair in pairs[:3]) + (", ..." if len(pairs) > 3 else "")
+        yield Observation(
+            subject.document, max(pair.worst for pair in pairs), "",
+            f"differ from their mirror images by less than 1 percent: {shown}", "compute both sides from one drawing",
+        )  # fmt: skip
 
 
 LIMITED = ("revolute", "prismatic")

@@ -115,6 +115,14 @@ def robots_in(folder: str | os.PathLike[str]) -> dict[str, Path]:
     return robots
 
 
+def several(robot: str) -> dict[str, Path]:
+    """The files of `example:all` or of a folder that holds more than one, by name; none where one robot is meant."""
+    if robot == f"{EXAMPLE}all":
+        return examples()
+    files = robots_in(robot) if robot.strip() and Path(robot).is_dir() else {}
+    return files if len(files) > 1 else {}
+
+
 def find(source: AnySource) -> Source:
     """The text behind a source; see the table at the top of this file.
 

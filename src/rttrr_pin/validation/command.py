@@ -11,7 +11,7 @@ import click
 from rttrr_pin.errors import InputError
 from rttrr_pin.reporting.options import flag, outcome, robot, seed
 from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json
-from rttrr_pin.urdf.sources import EXAMPLE, examples, robots_in
+from rttrr_pin.urdf.sources import several
 from rttrr_pin.validation.options import RunOptions, conditions, drawn, payload, programs
 
 STATES = 10_000
@@ -37,10 +37,10 @@ def validate(states: int, json: str | None, quiet: bool, full: bool, **run: Any)
     from rttrr_pin.validation.report import show_validation
 
     options = RunOptions(**run)
-    several = _several(options.robot)
-    options.check_target(json, several.values())
-    if several:
-        return _validate_several(several, options, states, json, quiet, full)
+    robots = several(options.robot)
+    options.check_target(json, robots.values())
+    if robots:
+        return _validate_several(robots, options, states, json, quiet, full)
     loaded = options.load()
     with progress(states, quiet) as advance:
         result = comparing.validate(
@@ -97,16 +97,6 @@ def search(evaluations: int, json: str | None, quiet: bool, **run: Any) -> int:
     write_json(json, worst.to_dict)
     show_search(worst, Output(quiet=quiet or json == "-", soft_wrap=False))
     return AGREE if worst.passed else DISAGREE
-
-
-def _several(robot: str) -> dict[str, Path]:
-    """The files of `example:all` or of a folder that holds more than one; none where one robot is meant."""
-    if not robot.strip():
-        return {}
-    if robot == f"{EXAMPLE}all":
-        return examples()
-    files = robots_in(robot) if Path(robot).is_dir() else {}
-    return files if len(files) > 1 else {}
 
 
 def _validate_several(
