@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from rttrr_pin.auditing import audit as audit
     from rttrr_pin.auditing import read_publication as read_publication
     from rttrr_pin.compile import Kernel as Kernel
+    from rttrr_pin.core.identification import BaseParameters as BaseParameters
     from rttrr_pin.core.joint import Joint as Joint
     from rttrr_pin.core.joint import JointEffects as JointEffects
     from rttrr_pin.core.joint import Limits as Limits
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from rttrr_pin.core.model import Link as Link
     from rttrr_pin.core.model import Model as Model
     from rttrr_pin.core.payload import RandomPayload as RandomPayload
+    from rttrr_pin.core.statics import WrenchEstimate as WrenchEstimate
     from rttrr_pin.core.wrench import LinkWrenches as LinkWrenches
     from rttrr_pin.core.wrench import Wrench as Wrench
     from rttrr_pin.derivation import derive as derive
@@ -45,9 +47,11 @@ __version__ = "0.1.0"
 _PLACES = {
     "auditing": ("audit", "read_publication"),
     "compile": ("Kernel",),
+    "core.identification": ("BaseParameters",),
     "core.joint": ("Joint", "JointEffects", "Limits", "Mimic"),
     "core.model": ("Link", "Model"),
     "core.payload": ("RandomPayload",),
+    "core.statics": ("WrenchEstimate",),
     "core.wrench": ("LinkWrenches", "Wrench"),
     "derivation": ("derive",),
     "errors": ("InputError", "RttrrError"),

@@ -4,19 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import fields, replace
-from typing import TYPE_CHECKING, Any, cast, overload
+from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from rttrr_pin.core import altered
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dynamics import bodies
+from rttrr_pin.core.identification import EFFECTS, BaseParameters, base_parameters, parameter_names, random_motion
 from rttrr_pin.core.inertia import SpatialInertia
-from rttrr_pin.core.inputs import Coordinates, coordinates, finite, real
+from rttrr_pin.core.inputs import Coordinates, coordinates, finite, real, vectors
 from rttrr_pin.core.joint import JointEffects
-from rttrr_pin.core.model import Model
-from rttrr_pin.core.payload import Payloads, loads_of
+from rttrr_pin.core.model import Link, Model
+from rttrr_pin.core.payload import Payloads, loads_of, payload_link
 from rttrr_pin.core.scalars import FLOAT
-from rttrr_pin.core.wrench import RESULTS, LinkWrenches
+from rttrr_pin.core.statics import WrenchEstimate, at_point, estimate, turned
+from rttrr_pin.core.wrench import RESULTS, LinkWrenches, Wrench
 from rttrr_pin.errors import InputError, NumberError, UnknownNameError
 
 if TYPE_CHECKING:
@@ -135,8 +139,9 @@ class Robot:
 
         Args:
             outputs: what to compute, one name or several: `"tau"`, `"F"`, `"N"`, `"f"`, `"n"`, `"tau_joint"`,
-                `"mass_matrix"`, `"nonlinear_effects"`, `"gravity_torque"`, `"regressor"`, `"dtau_dq"`, `"dtau_dv"`,
-                `"dtau_da"`; and each of them with `"_bound"` behind, a bound on its rounding. The fewer, the faster.
+                `"mass_matrix"`, `"nonlinear_effects"`, `"gravity_torque"`, `"regressor"`, `"joint_regressor"` (of armature
+                and friction), `"link_jacobians"` and `"link_placements"` (of every link: velocity of the origin over
+                angular velocity, in {i}; R_0_i and p_0_i), `"dtau_dq"`, `"dtau_dv"`, `"dtau_da"`; and each of them with `"_bound"` behind, a bound on its rounding. The fewer, the faster.
             emitter: `"llvm"` (machine code), `"numpy"` (wherever NumPy runs) or `"c"` (by the C compiler);
                 None for what is there.
 
@@ -172,22 +177,112 @@ class Robot:
         """The driving forces that hold the robot still, (..., nv) [N m or N]."""
         return cast("Array", self._kernel("gravity_torque")(q))
 
-    def regressor(self, q: Coordinates, v: Coordinates, a: Coordinates) -> Array:
+    def regressor(self, q: Coordinates, v: Coordinates, a: Coordinates, joint_effects: bool = False) -> Array:
         """Y(q, v, a), (..., nv, 10 links), by which the driving forces are linear: tau - tau_joint = Y pi.
 
         pi is `inertial_parameters()`: of each link m, m c_x, m c_y, m c_z, I_xx, I_xy, I_yy, I_xz, I_yz, I_zz with the
-        tensor about the origin of {i} (Pinocchio's order). Fixed links have columns of their own.
+        tensor about the origin of {i} (Pinocchio's order). Fixed links have columns of their own. With `joint_effects`
+        three columns follow for each joint that moves, those that follow others included: a, v and sign(v), which its
+        armature, damping and Coulomb friction multiply; then tau = Y pi.
         """
-        return cast("Array", self._kernel("regressor")(q, v, a))
+        Y = cast("Array", self._kernel("regressor")(q, v, a))
+        if not joint_effects:
+            return Y
+        return np.concatenate([Y, cast("Array", self._kernel("joint_regressor")(q, v, a))], axis=-1)
 
-    def inertial_parameters(self) -> Array:
-        """The parameters that `regressor` multiplies, (10 links,), ten for each link."""
+    def inertial_parameters(self, joint_effects: bool = False) -> Array:
+        """The parameters that `regressor` multiplies, ten for each link, and three for each joint that moves."""
         parameters: list[Any] = []
         for body in bodies(self.model, FLOAT):
             link = SpatialInertia.of(body.M, body.r_C, body.I)
             x, y, z = link.J.rows
             parameters += [link.m, *link.h, x.x, x.y, y.y, x.z, y.z, z.z]
+        if joint_effects:
+            moving = (joint.effects for joint in self.model.joints if joint.nv)
+            parameters += [getattr(own, effect) for own in moving for effect in EFFECTS]
         return np.array(parameters, dtype=np.float64)
+
+    def base_parameters(self, joint_effects: bool = False, tolerance: float = 1e-9) -> BaseParameters:
+        """The parameters that motion can tell: a basis of the regressor's columns, and the map to it from all.
+
+            tau - tau_joint = Y pi = Y_b pi_b,   pi_b = B pi      (Gautier and Khalil, 1990; by QR, Gautier, 1991)
+
+        A trajectory is judged by `base.condition(robot.regressor(q, v, a))`.
+
+        Args:
+            joint_effects: whether armature, damping and Coulomb friction are parameters too; then tau = Y_b pi_b.
+            tolerance: how far a column may be from the span of those before it to depend on them, relative to the
+                largest of its kind.
+        """
+        names = parameter_names(self.model, joint_effects)
+        Y = self.regressor(*random_motion(self.model, len(names)), joint_effects)
+        return base_parameters(names, Y, tolerance)
+
+    def jacobian(
+        self,
+        q: Coordinates,
+        link: str | None = None,
+        point: ArrayLike = (0.0, 0.0, 0.0),
+        expressed_in: Literal["link", "base"] = "link",
+    ) -> Array:
+        """J(q), (..., 6, nv), by which a point of a link moves: (velocity of the point, angular velocity) = J v.
+
+        Args:
+            q: coordinates.
+            link: the link; None: the tool, that is the robot's only last link.
+            point: from the origin of the link's frame, in the link's axes, (..., 3) [m].
+            expressed_in: the axes of both velocities: `"link"` or `"base"`.
+
+        Raises:
+            InputError: there are no such axes; or several last links and no name.
+        """
+        if expressed_in not in ("link", "base"):
+            raise InputError(f"expressed_in is {expressed_in!r}: expected 'link' or 'base'")
+        i = payload_link(self.model, link)
+        parts = self._kernel(("link_jacobians", "link_placements"))(q)
+        J = at_point(parts["link_jacobians"][..., i, :, :], vectors("point", point))
+        return turned(J, parts["link_placements"][..., i, :, :3]) if expressed_in == "base" else J
+
+    def wrench_torque(self, q: Coordinates, wrench: Wrench, point: ArrayLike = (0.0, 0.0, 0.0)) -> Array:
+        """The driving forces that a wrench at a point of a link takes, to be added to tau: J^T w, (..., nv) [N m or N].
+
+        A wrench is what the robot exerts on its surroundings, also here: of what acts on the robot, pass the opposite.
+
+        Args:
+            q: coordinates.
+            wrench: force, and moment about the point.
+            point: from the origin of the link's frame, in the link's axes, (..., 3) [m].
+        """
+        w = np.concatenate(np.broadcast_arrays(np.asarray(wrench.force), np.asarray(wrench.moment)), axis=-1)
+        J = self.jacobian(q, wrench.link, point, wrench.expressed_in)
+        return np.asarray(np.einsum("...ij,...i->...j", J, w))
+
+    def wrench_from_torque(
+        self,
+        q: Coordinates,
+        tau: Coordinates,
+        link: str | None = None,
+        point: ArrayLike = (0.0, 0.0, 0.0),
+        expressed_in: Literal["link", "base"] = "link",
+        tolerance: float = 1e-9,
+    ) -> WrenchEstimate:
+        """The wrench at a point of a link that explains driving forces best, by least squares; its rank is told.
+
+        Args:
+            q: coordinates.
+            tau: what the wrench adds to the driving forces, (..., nv) [N m or N]: measured ones less those of
+                `inverse_dynamics`.
+            link: as in `jacobian`.
+            point: the same.
+            expressed_in: the axes of force and moment.
+            tolerance: singular values of J at most this part of the largest count as zero.
+
+        Returns:
+            What the robot exerts on its surroundings; where joints do not feel all six components, of the wrenches that
+            explain tau the smallest.
+        """
+        J = self.jacobian(q, link, point, expressed_in)
+        return estimate(J, coordinates("tau", tau, self.model.moving), tolerance)
 
     def derivatives(
         self, q: Coordinates, v: Coordinates, a: Coordinates, payload: Payloads = None
@@ -233,3 +328,65 @@ class Robot:
                     raise NumberError(message, name=effect, joint=name, value=number)
         joints = tuple(replace(joint, effects=effects.get(joint.name, joint.effects)) for joint in self.model.joints)
         return Robot(replace(self.model, joints=joints))
+
+    def with_payload_body(
+        self,
+        mass: float,
+        com: ArrayLike = (0.0, 0.0, 0.0),
+        inertia: ArrayLike | None = None,
+        link: str | None = None,
+        name: str = "payload",
+    ) -> Robot:
+        """The same robot, carrying a body: a link more, the last one, on a fixed joint that tells what holds the body.
+
+        The text that other programs read has the link too.
+
+        Args:
+            mass: of the body [kg].
+            com: its centre of mass from the origin of the link that carries it, in that link's axes, (3,) [m].
+            inertia: its tensor about its centre of mass in the same axes, (3, 3) [kg m^2], `inertia[0, 1]` URDF's `ixy`;
+                None for a point.
+            link: the link that carries it; None: the tool, that is the robot's only last link.
+            name: of the new link; its joint is called so with `_joint` behind.
+
+        Raises:
+            UnknownNameError: no link is called so.
+            NumberError: a number is not finite, or the mass is negative.
+            InputError: the tensor is not symmetric, or the name is taken.
+        """
+        kilograms = finite("mass", real("mass", mass))
+        if kilograms.ndim or kilograms < 0.0:
+            raise NumberError(f"mass is {mass}: expected one number that is not negative", name="mass", value=mass)
+        tensor = np.zeros((3, 3)) if inertia is None else finite("inertia", real("inertia", inertia))
+        body = Link(name, float(kilograms), vectors("com", com), tensor)
+        parent = payload_link(self.model, link)
+        model = altered.with_body(self.model, body, parent)
+        if model.document is not None:
+            from rttrr_pin.urdf.altered import with_body  # loads lxml
+
+            document = with_body(model.document, body, model.joints[-1], model.links[parent].name)
+            model = replace(model, document=document)
+        return Robot(model)
+
+    def with_locked(self, joints: Mapping[str, ArrayLike]) -> Robot:
+        """The same robot, some of whose joints stand still; they have no place in q, v, a and tau any more.
+
+        A joint that follows a locked one stands still with it. Links, and the forces across them, stay as they are, and
+        the place of a locked link is as exact as it is at that coordinate. The text that other programs read has fixed
+        joints there.
+
+        Args:
+            joints: by name of a moving joint the coordinate at which it is locked [rad or m]; of a joint with several
+                coordinates all of them. These doubles are exact.
+
+        Raises:
+            UnknownNameError: no joint that moves by itself is called so.
+            InputError: the floating base was named.
+        """
+        model = altered.with_locked(self.model, joints)
+        if model.document is not None:
+            from rttrr_pin.urdf.altered import with_fixed  # loads lxml
+
+            locked = [joint for joint in model.joints if joint.lock is not None]
+            model = replace(model, document=with_fixed(model.document, locked))
+        return Robot(model)

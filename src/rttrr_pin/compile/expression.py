@@ -179,7 +179,7 @@ class Graph:
     def function(self, op: Op, x: int) -> int:
         """Sine, cosine, sign or absolute value; odd and even ones lose the sign of their argument."""
         if self.op[x] is Op.CONSTANT:
-            return self.constant(_of_number(op, self.value[x]))
+            return self.constant(of_number(op, self.value[x]))
         if self.op[x] is Op.NEG:
             inner = self.function(op, self.args[x][0])
             return inner if op in (Op.COS, Op.ABS) else self.neg(inner)
@@ -217,7 +217,7 @@ FUNCTIONS: dict[Op, Callable[[float], float]] = {
 """Each function of a number."""
 
 
-def _of_number(op: Op, x: float) -> float:
+def of_number(op: Op, x: float) -> float:
     """A function of a number; the sine and cosine of one that knows its error know theirs, but for sin 0 and cos 0."""
     value = FUNCTIONS[op](x)
     if op in (Op.SIN, Op.COS) and isinstance(x, ConstantWithError) and not exactly(x, 0.0):

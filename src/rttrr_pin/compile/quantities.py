@@ -6,14 +6,16 @@ Each is a line in the table `QUANTITIES`: what it needs, its shape, and how its 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cached_property
 
 import numpy as np
 
 from rttrr_pin.core.algebra import Matrix, Scalar, Vector
 from rttrr_pin.core.dual import Dual, part_of
-from rttrr_pin.core.dynamics import Result, bodies, dynamics
+from rttrr_pin.core.dynamics import Result, bodies, dynamics, generalised_forces, joint_effects, joint_states
+from rttrr_pin.core.energy import LinkState, moving_links
+from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.newton_euler import Payload
@@ -100,6 +102,43 @@ def _regressor(motion: Motion) -> list[Scalar]:
     return [part_of(row, k) for row in tau for k in range(10 * len(links))]
 
 
+EFFECTS = tuple(JointEffects(**{effect.name: 1.0}) for effect in fields(JointEffects))
+"""Armature, damping and friction of 1, one at a time."""
+
+
+def _joint_regressor(motion: Motion) -> list[Scalar]:
+    """Y(q, v, a) with tau_joint = Y pi: the force of each effect of 1 in each joint that moves, followers too."""
+    model, arithmetic = motion.model, motion.arithmetic
+    states = joint_states(model, arithmetic, motion.q, motion.v, motion.a)
+    at_rest: list[Sequence[Scalar]] = [[0.0] * joint.nv for joint in model.joints]
+    columns = [
+        generalised_forces(model, arithmetic, [*at_rest[:i], joint_effects(own, state, arithmetic), *at_rest[i + 1 :]])
+        for i, state in enumerate(states)
+        if model.joints[i].nv
+        for own in EFFECTS
+    ]
+    return [column[row] for row in range(model.nv) for column in columns]
+
+
+def _link_states(motion: Motion) -> list[LinkState]:
+    """Placement and velocity of each link, as duals along the rates."""
+    arithmetic, rates = over_duals(motion.arithmetic), [Dual(0.0, {k: 1.0}) for k in range(motion.model.nv)]
+    links = motion.links or bodies(motion.model, motion.arithmetic)
+    return moving_links(motion.model, links, motion.q, rates, arithmetic)
+
+
+def _link_jacobians(motion: Motion) -> list[Scalar]:
+    """Of each link, in {i}, v of the origin and w by the rates; both are linear in them."""
+    states, directions = _link_states(motion), range(motion.model.nv)
+    return [part_of(row, k) for link in states for row in (*link.v, *link.w) for k in directions]
+
+
+def _link_placements(motion: Motion) -> list[Scalar]:
+    """R_0_i and behind it p_0_i, row by row."""
+    states = _link_states(motion)
+    return [x for link in states for row, p in zip(link.R.rows, link.p, strict=True) for x in (*row, p)]
+
+
 def _with_parameters(body: Body, first: int) -> Body:
     """The body as a point mass at its origin, whose ten parameters are directions from `first` on."""
     m, x, y, z, xx, xy, yy, xz, yz, zz = (Dual(0.0, {first + k: 1.0}) for k in range(10))
@@ -145,6 +184,15 @@ QUANTITIES: dict[str, Quantity] = {
     ),
     "regressor": Quantity(
         "qva", lambda model: (model.nv, 10 * len(model.links)), _regressor, of_links=True, by_steps=False
+    ),
+    "joint_regressor": Quantity(
+        "qva", lambda model: (model.nv, 3 * sum(joint.nv > 0 for joint in model.joints)), _joint_regressor, by_steps=False
+    ),
+    "link_jacobians": Quantity(
+        "q", lambda model: (len(model.links), 6, model.nv), _link_jacobians, of_links=True, by_steps=False
+    ),
+    "link_placements": Quantity(
+        "q", lambda model: (len(model.links), 3, 4), _link_placements, of_links=True, by_steps=False
     ),
     "dtau_dq": _derivatives("q"),
     "dtau_dv": _derivatives("v"),

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 from rttrr_pin.compile.constants import ConstantWithError
-from rttrr_pin.compile.expression import Graph, Node, Op
+from rttrr_pin.compile.expression import Graph, Node, Op, of_number
 from rttrr_pin.compile.program import Field, Program
 from rttrr_pin.compile.quantities import QUANTITIES, Motion
 from rttrr_pin.compile.regrouping import regroup
@@ -120,10 +119,10 @@ def _keep(vector: Vector) -> Vector:
 
 
 def _sincos(q: Any) -> tuple[Scalar, Scalar]:
-    """Also of a plain number: what follows another joint with multiplier 0 stands still."""
+    """Also of a plain number: a locked joint stands still, and one that follows another with multiplier 0."""
     if isinstance(q, Node):
         return q.function(Op.SIN), q.function(Op.COS)
-    return math.sin(q), math.cos(q)
+    return of_number(Op.SIN, q), of_number(Op.COS, q)
 
 
 def _sign(x: Any) -> Scalar:

@@ -6,7 +6,7 @@ Like the recursion this is written once, over scalars of any kind.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import islice
 
@@ -14,24 +14,27 @@ import numpy as np
 
 from rttrr_pin.core.algebra import Matrix, Scalar, Vector
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.joint import Joint, JointEffects, Mimic
+from rttrr_pin.core.joint import Joint, JointEffects, Lock, Mimic
+from rttrr_pin.core.joints import FIXED
 from rttrr_pin.core.joints.base import Body, JointState
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.newton_euler import Payload, newton_euler
 from rttrr_pin.core.payload import Load, payloads_of
-from rttrr_pin.core.scalars import AXIS_ERROR, ROTATION_ERROR, UNIT_ROUNDOFF, Arithmetic, NumberOf, columns
+from rttrr_pin.core.scalars import AXIS_ERROR, FLOAT, ROTATION_ERROR, UNIT_ROUNDOFF, Arithmetic, columns
 from rttrr_pin.core.wrench import QUANTITIES
 
 
 def bodies(model: Model, arithmetic: Arithmetic) -> list[Body]:
     """The links and joints of a model with their numbers as scalars."""
-    return _bodies(model, arithmetic.number)
+    if not any(joint.lock for joint in model.joints):  # so that arithmetics that differ in sines alone share bodies
+        arithmetic = replace(FLOAT, number=arithmetic.number)
+    return _bodies(model, arithmetic)
 
 
 @lru_cache(maxsize=32)
-def _bodies(model: Model, number: NumberOf) -> list[Body]:
+def _bodies(model: Model, arithmetic: Arithmetic) -> list[Body]:
     """Models and bodies are frozen, so the last few are kept."""
-    return [body_of(*pair, number) for pair in zip(model.joints, model.links, strict=True)]
+    return [body_of(*pair, arithmetic) for pair in zip(model.joints, model.links, strict=True)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,8 +161,11 @@ def generalised_forces(model: Model, arithmetic: Arithmetic, forces: Sequence[Se
     return [force for i in model.independent for force in total[i]]
 
 
-def body_of(joint: Joint, link: Link, number: NumberOf) -> Body:
+def body_of(joint: Joint, link: Link, arithmetic: Arithmetic) -> Body:
     """One link with its joint, in scalars of one kind."""
+    if joint.lock is not None:
+        return locked_body(body_of(joint.lock.joint, link, arithmetic), joint.lock, arithmetic)
+    number = arithmetic.number
     # Rotation matrices from rpy, axes divided by their length and turned tensors are rounded; the rest is as written.
     turned = ROTATION_ERROR if joint.rotated else 0.0
     normalised = AXIS_ERROR if np.count_nonzero(joint.axis) > 1 else 0.0
@@ -174,3 +180,13 @@ def body_of(joint: Joint, link: Link, number: NumberOf) -> Body:
         I=Matrix.of(link.inertia, lambda value: number(value, turned_tensor)),
         parameters=tuple(number(x, 0.0) for x in joint.type.parameters),
     )
+
+
+def locked_body(body: Body, lock: Lock, arithmetic: Arithmetic) -> Body:
+    """The link where its joint is locked: on a fixed joint, at the place that the joint's motion gives at rest."""
+    q: Sequence[Scalar] = [arithmetic.number(x, 0.0) for x in lock.q]
+    if lock.joint.mimic is not None:
+        q = mimicked(lock.joint.mimic, JointState(q, [0], [0]), arithmetic).q
+    at_rest = [0] * body.type.nv
+    motion = body.type.motion(body, JointState(q, at_rest, at_rest), arithmetic.sincos)
+    return replace(body, type=FIXED, R=motion.R, p=motion.p, parameters=())

@@ -64,6 +64,19 @@ class JointEffects:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
+class Lock:
+    """What a joint is that stands still because it is locked.
+
+    Attributes:
+        joint: the joint as it moves.
+        q: the coordinates at which it stands; of a joint that follows another, that one's.
+    """
+
+    joint: Joint
+    q: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Joint:
     """A joint, and where it sits on the link that carries it.
 
@@ -79,6 +92,8 @@ class Joint:
         mimic: the joint that it follows, if any.
         dynamics: damping and friction as the file gives them, whether they take part or not.
         effects: what the joint itself adds to its driving force.
+        lock: of a fixed joint that is one because it is locked (`core/altered.py`): what it is else. `R` and `p` are
+            then rounded results, and whoever must know how far takes them from the lock (`body_of`).
     """
 
     name: str
@@ -92,6 +107,7 @@ class Joint:
     mimic: Mimic | None = None
     dynamics: JointEffects = JointEffects()
     effects: JointEffects = JointEffects()
+    lock: Lock | None = None
 
     def __post_init__(self) -> None:
         for name, shape in (("R", (3, 3)), ("p", (3,)), ("axis", (3,))):

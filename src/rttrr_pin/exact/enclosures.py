@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import batch_shape, check_overflow, flat, split_columns
-from rttrr_pin.core.dynamics import bodies
+from rttrr_pin.core.dynamics import body_of
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import QUANTITIES, LinkWrenches
@@ -185,8 +185,9 @@ def _recursion(
         return straight_line(model, frames, parameters)
 
     def prepare() -> Run:
-        exact, links = model, bodies(model, INTERVAL)
-        if parameters != "doubles":
+        if parameters == "doubles":
+            exact, links = model, [body_of(*pair, INTERVAL) for pair in zip(model.joints, model.links, strict=True)]
+        else:
             of_file = exact_parameters(model, parameters)
             exact, links = of_file.model, of_file.bodies(INTERVAL, lambda square: interval(square).rsqrt())
         return lambda state: [arb(x) for x in flat_dynamics(exact, INTERVAL, [arb(x) for x in state], frames, links)]

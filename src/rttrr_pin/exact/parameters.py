@@ -16,6 +16,7 @@ from typing import Any, Literal
 import numpy as np
 
 from rttrr_pin.core.algebra import Matrix, Scalar, Vector, rotation
+from rttrr_pin.core.dynamics import locked_body
 from rttrr_pin.core.joint import Joint, JointEffects, Mimic
 from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
@@ -78,17 +79,18 @@ class ExactParameters:
             if any(self.exact(angle) for angle in inertial.origin.rpy.each):
                 turn = R(inertial.origin)
                 I = turn @ I @ turn.T
+            moving = _as_it_moves(joint)
             body = Body(
-                type=joint.type,
-                axis=_axis(joint, [self.exact(x) for x in own.axis.each], number, inverse_root),
+                type=moving.type,
+                axis=_axis(moving, [self.exact(x) for x in own.axis.each], number, inverse_root),
                 R=R(own.origin),
                 p=vector(own.origin.xyz),
                 M=number(self.exact(inertial.mass)),
                 r_C=vector(inertial.origin.xyz),
                 I=I,
-                parameters=tuple(number(Fraction(x)) for x in joint.type.parameters),
+                parameters=tuple(number(Fraction(x)) for x in moving.type.parameters),
             )
-            bodies.append(body)
+            bodies.append(body if joint.lock is None else locked_body(body, joint.lock, arithmetic))
         return bodies
 
 
@@ -138,7 +140,9 @@ def _joint(joint: Joint, document: UrdfDocument, exact: Exact) -> Joint:
 
     effects, armature = joint.effects, Fraction(joint.effects.armature)
     damping, friction = number(own.damping, effects.damping), number(own.friction, effects.friction)
-    return replace(joint, mimic=mimic, effects=JointEffects(armature, damping, friction))  # type: ignore[arg-type]
+    lock = joint.lock and replace(joint.lock, joint=_joint(joint.lock.joint, document, exact))
+    effects = JointEffects(armature, damping, friction)  # type: ignore[arg-type]
+    return replace(joint, mimic=mimic, effects=effects, lock=lock)
 
 
 def _differences(model: Model, read: Model) -> Iterator[str]:
@@ -150,8 +154,20 @@ def _differences(model: Model, read: Model) -> Iterator[str]:
         if not _same(link, links.get(link.name), "mass", "com", "inertia"):
             yield f"link {link.name!r}"
     for joint in model.joints:
-        if not _same(joint, joints.get(joint.name), "p", "R", "axis", "mimic"):
+        own, other = _as_it_moves(joint), joints.get(joint.name)
+        if not _same(own, other, "p", "R", "axis") or _followed(model, own) != _followed(read, other):
             yield f"joint {joint.name!r}"
+
+
+def _as_it_moves(joint: Joint) -> Joint:
+    """The joint of the file, also where it is locked."""
+    return joint if joint.lock is None else joint.lock.joint
+
+
+def _followed(model: Model, joint: Joint | None) -> tuple[str, float, float] | None:
+    """The joint that a joint follows by its name, as links can stand in another order than the file's; and how."""
+    mimic = joint and joint.mimic
+    return mimic and (model.joints[mimic.joint].name, mimic.multiplier, mimic.offset)
 
 
 def _same(own: object, read: object, *names: str) -> bool:

@@ -81,7 +81,7 @@ def straight_line(model: Model, frames: LoadFrames, parameters: Parameters) -> S
         sign=lambda x: x.function(Op.SIGN),
     )
     if parameters == "doubles":
-        links = [body_of(*pair, arithmetic.number) for pair in zip(model.joints, model.links, strict=True)]
+        links = [body_of(*pair, arithmetic) for pair in zip(model.joints, model.links, strict=True)]
     else:
         of_file = exact_parameters(model, parameters)
         model, links = of_file.model, of_file.bodies(arithmetic, inverse_root)

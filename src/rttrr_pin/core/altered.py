@@ -1,0 +1,84 @@
+"""A robot with a body more, or with fewer joints that move: the numbers (`urdf/altered.py` has the text)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rttrr_pin.core.dynamics import body_of, locked_body
+from rttrr_pin.core.inputs import coordinates
+from rttrr_pin.core.joint import Joint, JointEffects, Lock
+from rttrr_pin.core.joints import FIXED
+from rttrr_pin.core.model import Link, Model
+from rttrr_pin.core.scalars import FLOAT
+from rttrr_pin.errors import InputError, ShapeError, UnknownNameError
+
+
+def with_body(model: Model, link: Link, parent: int) -> Model:
+    """The robot with a link more, the last one, fixed to a link in the same place and axes.
+
+    Args:
+        model: the robot.
+        link: mass, centre of mass and tensor, in the axes of the link that carries it.
+        parent: the index of that link.
+    """
+    joint = Joint(f"{link.name}_joint", FIXED, parent)
+    return replace(model, links=(*model.links, link), joints=(*model.joints, joint))
+
+
+def with_locked(model: Model, q: Mapping[str, ArrayLike]) -> Model:
+    """The robot with joints that stand still, those that follow them too; links, and their order, stay as they are.
+
+    A fixed joint at R, p of the joint's motion at q, where it is at rest: what the recursion yields for
+    q, v = 0, a = 0. Pinocchio's `buildReducedModel`, but that no link disappears in another.
+
+    Args:
+        model: the robot.
+        q: by name of a moving joint, its coordinate [rad or m], or its coordinates.
+
+    Raises:
+        UnknownNameError: a name is of no joint that moves by itself.
+        NumberError, ShapeError: as for coordinates; here there are no batches.
+        InputError: the floating base is no joint of the robot.
+    """
+    for name in q:
+        if name not in model.joint_names:
+            raise UnknownNameError("moving joint", name, model.joint_names, _leader(model, name))
+    chosen = [joint for joint in model.moving if joint.name in q]
+    if model.floating and model.joints[0] in chosen:
+        raise InputError(f"{model.joints[0].name!r} is the floating base: load the robot with base='fixed'")
+    values = coordinates("q", q, chosen)
+    if values.ndim != 1:
+        raise ShapeError(
+            f"the coordinates of locked joints have shape {values.shape}: pass one state, without batch axes",
+            name="q",
+            got=values.shape,
+            wanted=f"({values.shape[-1]},)",
+        )
+    ends = np.cumsum([joint.nq for joint in chosen])[:-1]
+    locks = {joint.name: tuple(own.tolist()) for joint, own in zip(chosen, np.split(values, ends), strict=True)}
+
+    def locked(joint: Joint) -> Joint:
+        leader = joint if joint.mimic is None else model.joints[joint.mimic.joint]
+        return _locked(Lock(joint, locks[leader.name])) if leader.name in locks else joint
+
+    return replace(model, joints=tuple(locked(joint) for joint in model.joints)) if locks else model
+
+
+def _locked(lock: Lock) -> Joint:
+    """The fixed joint, its placement in doubles."""
+    joint = lock.joint
+    body = locked_body(body_of(joint, Link(""), FLOAT), lock, FLOAT)
+    R, p = body.R.array, np.array([*body.p], dtype=np.float64)
+    return replace(joint, type=FIXED, R=R, p=p, mimic=None, effects=JointEffects(), lock=lock)
+
+
+def _leader(model: Model, name: object) -> str:
+    """The fix, where a joint that follows another is named."""
+    for joint in model.joints:
+        if joint.name == name and joint.mimic is not None:
+            return f"{name!r} follows {model.joints[joint.mimic.joint].name!r}: lock that one"
+    return ""

@@ -1,0 +1,209 @@
+"""Which inertial parameters motion can tell: a basis of the regressor's columns, and the map to it from all parameters.
+
+A parameter does not enter tau alone where links cannot move alone: tau = Y pi = Y_b pi_b, where Y_b are columns of Y
+that are linearly independent for all motions, and pi_b = B pi are sums of parameters.
+
+Source: Gautier, Khalil, "Direct calculation of minimum set of inertial parameters of serial robots", IEEE Transactions
+on Robotics and Automation 6(3), 1990; by numbers, Gautier, "Numerical calculation of the base inertial parameters of
+robots", Journal of Robotic Systems 8(4), 1991.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.inputs import finite, real
+from rttrr_pin.core.model import Model
+from rttrr_pin.errors import InputError, ShapeError
+
+INERTIAL = ("m", "m c_x", "m c_y", "m c_z", "I_xx", "I_xy", "I_yy", "I_xz", "I_yz", "I_zz")
+"""The ten parameters of a link, the tensor about the origin of {i}, in the order of the regressor."""
+
+EFFECTS = ("armature", "damping", "friction")
+"""The three of a joint."""
+
+KINDS = dict.fromkeys(INERTIAL[1:4], "first moment") | dict.fromkeys(INERTIAL[4:], "tensor")
+"""Parameters that are measured in one unit, so that their columns can be compared; others are a kind of their own."""
+
+LARGEST = (math.pi, 3.0, 10.0)
+"""Of coordinates, rates and accelerations that are drawn: such that all terms of tau are of about one size."""
+
+Y_OVER = 3
+"""Rows for each column: random states tell the rank of a robot with probability 1, and well if there are some more."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class BaseParameters:
+    """A basis of the parameters that motion can tell, made by `Robot.base_parameters`.
+
+    Attributes:
+        names: of all parameters, the columns of the regressor.
+        independent: the columns that make the basis.
+        map: B with pi_b = B pi, (rank, parameters); of the basis' own columns the identity, and zero for parameters
+            that no motion tells.
+        tolerance: a column depends on those before it if it is no farther from their span, relative to the largest
+            column of its kind (masses, first moments, tensors, each effect of joints).
+        farthest_dependent: the largest such distance of a column that was found to depend on those before.
+        nearest_independent: the smallest of one that was not; the rank is certain where both are far apart.
+    """
+
+    names: tuple[str, ...]
+    independent: tuple[int, ...]
+    map: Array
+    tolerance: float
+    farthest_dependent: float
+    nearest_independent: float
+
+    @property
+    def rank(self) -> int:
+        """The number of base parameters."""
+        return len(self.independent)
+
+    @property
+    def expressions(self) -> tuple[str, ...]:
+        """Each base parameter as the sum of parameters that it is."""
+        return tuple(self._expression(column, row) for column, row in zip(self.independent, self.map, strict=True))
+
+    def of(self, parameters: ArrayLike) -> Array:
+        """The base parameters, (rank,), of `Robot.inertial_parameters()`."""
+        pi = finite("parameters", real("parameters", parameters))
+        self._check("parameters", pi)
+        return np.asarray(pi @ self.map.T)
+
+    def regressor(self, Y: ArrayLike) -> Array:
+        """The columns of `Robot.regressor` that base parameters multiply, (..., nv, rank)."""
+        columns = finite("Y", real("Y", Y))
+        self._check("Y", columns)
+        return columns[..., list(self.independent)]
+
+    def condition(self, Y: ArrayLike, scaled: bool = False) -> float:
+        """How well a trajectory tells the base parameters: the condition number of its stacked regressor.
+
+            cond(W) = sigma_max(W) / sigma_min(W),   W the rows of `regressor(Y)` of all states
+
+        A relative error of tau is at most multiplied by it in pi_b. Infinite where a parameter does not show.
+
+        Args:
+            Y: `Robot.regressor(q, v, a)` along the trajectory, (..., nv, parameters).
+            scaled: whether each column is divided by its norm, so that the units of parameters do not count.
+        """
+        if not self.rank:
+            return 1.0
+        W = self.regressor(Y).reshape(-1, self.rank)
+        norms = np.linalg.norm(W, axis=0)
+        if len(W) < self.rank or not norms.all():
+            return math.inf
+        sigma = np.linalg.svd(W / norms if scaled else W, compute_uv=False)
+        return float(sigma[0] / sigma[-1]) if sigma[-1] > 0.0 else math.inf
+
+    def summary(self) -> str:
+        """The base parameters as text, one a line."""
+        count = f"{self.rank} base parameters of {len(self.names)}"
+        distances = f"dependent to {self.farthest_dependent:.2g}, independent from {self.nearest_independent:.2g}"
+        return "\n".join([f"{count}; columns {distances} (tolerance {self.tolerance:.2g})", *self.expressions])
+
+    def to_dict(self) -> dict[str, Any]:
+        """The same as lists, for JSON."""
+        return {
+            "schema": 1,
+            "names": list(self.names),
+            "independent": list(self.independent),
+            "map": self.map.tolist(),
+            "tolerance": self.tolerance,
+            "farthest_dependent": self.farthest_dependent,
+            "nearest_independent": self.nearest_independent if self.rank else None,
+        }
+
+    def _expression(self, own: int, row: Array) -> str:
+        others = (k for k in np.flatnonzero(row) if k != own)
+        terms = (f" {'-' if row[k] < 0.0 else '+'} {_factor(abs(row[k]))}{self.names[k]}" for k in others)
+        return self.names[own] + "".join(terms)
+
+    def _check(self, name: str, array: Array) -> None:
+        if array.ndim == 0 or array.shape[-1] != len(self.names):
+            raise ShapeError(
+                f"{name} has shape {array.shape}, expected {len(self.names)} on its last axis, one for each parameter: "
+                "pass joint_effects as it was passed to base_parameters",
+                name=name,
+                got=array.shape,
+                wanted=f"(..., {len(self.names)})",
+            )
+
+
+def parameter_names(model: Model, joint_effects: bool) -> tuple[str, ...]:
+    """The columns of the regressor: of each link, then, where they are asked for, of each joint that moves."""
+    joints = [joint.name for joint in model.joints if joint.nv and joint_effects]
+    links = (f"{parameter} of {link}" for link in model.link_names for parameter in INERTIAL)
+    return (*links, *(f"{effect} of {joint}" for joint in joints for effect in EFFECTS))
+
+
+def random_motion(model: Model, columns: int) -> tuple[Array, Array, Array]:
+    """q, v, a, (N, nq) and (N, nv), of so many states that a regressor of so many columns shows its rank."""
+    rng = np.random.default_rng(0)
+    states = Y_OVER * columns // max(model.nv, 1) + 1
+    q, v, a = (rng.uniform(-largest, largest, (states, model.nv)) for largest in LARGEST)
+    ends = np.cumsum([joint.nv for joint in model.moving])[:-1]
+    own = zip(model.moving, np.split(q, ends, axis=1), strict=True) if model.moving else ()
+    return np.hstack([np.empty((states, 0)), *(joint.type.coordinates_at(x) for joint, x in own)]), v, a
+
+
+def base_parameters(names: Sequence[str], Y: Array, tolerance: float) -> BaseParameters:
+    """The basis, by orthogonalising column after column (QR without pivoting).
+
+    So what a joint keeps to itself is added to the parameters of the links further in, as Gautier and Khalil do.
+
+    Args:
+        names: of the columns.
+        Y: the regressor at random states, (N, nv, columns).
+        tolerance: see `BaseParameters`.
+    """
+    if not 0.0 < tolerance < 1.0:
+        raise InputError(f"tolerance is {tolerance}: expected a number between 0 and 1, such as 1e-9")
+    W = Y.reshape(math.prod(Y.shape[:-1]), len(names))
+    norms = np.linalg.norm(W, axis=0)
+    scale = _of_kind(names, norms)
+    Q, kept = np.zeros_like(W), list[int]()
+    distances = np.zeros(len(names))
+    for k, column in enumerate(W.T):
+        basis = Q[:, : len(kept)]
+        rest = column - basis @ (basis.T @ column)
+        rest -= basis @ (basis.T @ rest)  # once is not enough where little is left (Giraud, Langou, Rozloznik)
+        distances[k] = np.linalg.norm(rest) / scale[k]
+        if distances[k] > tolerance:
+            Q[:, len(kept)] = rest / np.linalg.norm(rest)
+            kept.append(k)
+    projected = Q[:, : len(kept)].T @ W
+    B = np.linalg.solve(projected[:, kept], projected)
+    B[np.abs(B) * norms[kept, None] <= tolerance * scale] = 0.0
+    B[:, kept] = np.eye(len(kept))
+    dependent = np.delete(distances, kept)
+    return BaseParameters(
+        names=tuple(names),
+        independent=tuple(kept),
+        map=B,
+        tolerance=tolerance,
+        farthest_dependent=float(dependent.max(initial=0.0)),
+        nearest_independent=float(distances[kept].min(initial=math.inf)),
+    )
+
+
+def _of_kind(names: Sequence[str], norms: Array) -> Array:
+    """For each column the norm of the largest of its kind; 1 where all are zero."""
+    parameters = [name.partition(" of ")[0] for name in names]
+    kinds = [KINDS.get(parameter, parameter) for parameter in parameters]
+    largest: dict[str, float] = {}
+    for kind, norm in zip(kinds, norms.tolist(), strict=True):
+        largest[kind] = max(norm, largest.get(kind, 0.0))
+    return np.array([largest[kind] or 1.0 for kind in kinds])
+
+
+def _factor(x: float) -> str:
+    text = f"{x:.6g}"
+    return "" if text == "1" else f"{text} "

@@ -1,0 +1,70 @@
+"""The document of a robot that was altered since it was read: what the text says then, for programs that read it.
+
+Everything else in the text stays as it stands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from typing import Any
+
+from lxml import etree
+
+from rttrr_pin.core.joint import Joint
+from rttrr_pin.core.model import Document, Link, Model
+from rttrr_pin.urdf.document import UrdfDocument
+from rttrr_pin.urdf.parser import read_document
+from rttrr_pin.urdf.sources import Source
+from rttrr_pin.urdf.writer import angles_of, urdf_text, written
+
+OF_MOVING = ("origin", "axis", "limit", "mimic", "dynamics", "calibration", "safety_controller")
+"""What a joint that is locked loses; it gets another <origin>."""
+
+
+def with_body(document: Document, link: Link, joint: Joint, parent: str) -> Document:
+    """A document with a link more, on a joint."""
+    assert isinstance(document, UrdfDocument)
+    own = Model(document.name, Link(parent), (link,), (replace(joint, parent=-1),))
+    text = urdf_text(own).encode()
+    added = read_document(Source(document.source, text))
+    root = _parsed(document.text.encode())
+    for element in list(_parsed(text))[1:]:  # all but the parent
+        for part in element.iter():
+            part.tag = _prefix(root) + part.tag
+        root.append(element)
+    return replace(
+        document,
+        text=etree.tostring(root, encoding="unicode"),
+        links=document.links | {link.name: added.links[link.name]},
+        joints=document.joints | added.joints,
+    )
+
+
+def with_fixed(document: Document, joints: Iterable[Joint]) -> Document:
+    """A document in whose text joints are fixed at their placements; links and joints still are the file's."""
+    assert isinstance(document, UrdfDocument)
+    placed = {joint.name: joint for joint in joints}
+    root = _parsed(document.text.encode())
+    prefix = _prefix(root)
+    for element in root.iterfind(f"{prefix}joint"):
+        joint = placed.get(element.get("name"))
+        if joint is None:
+            continue
+        element.set("type", "fixed")
+        for child in [child for tag in OF_MOVING for child in element.iterfind(prefix + tag)]:
+            element.remove(child)
+        etree.SubElement(element, f"{prefix}origin", xyz=written(joint.p), rpy=written(angles_of(joint.R)))
+    return replace(document, text=etree.tostring(root, encoding="unicode"))
+
+
+def _parsed(text: bytes) -> Any:
+    """The outermost element of a text that was read before."""
+    parser = etree.XMLParser(encoding="utf-8", resolve_entities=False, no_network=True, load_dtd=False, recover=True)
+    return etree.fromstring(text, parser)
+
+
+def _prefix(root: Any) -> str:
+    """The default namespace, as tags have it; mostly there is none."""
+    tag: str = root.tag
+    return tag[: tag.rfind("}") + 1]

@@ -1,0 +1,183 @@
+"""Base parameters: their number and map exactly on RTTRR, against the regressor's rank and published counts elsewhere."""
+
+from __future__ import annotations
+
+from fractions import Fraction
+from typing import Any
+
+import numpy as np
+import pytest
+
+import rttrr_pin
+from rttrr_pin import JointEffects, Robot
+from rttrr_pin.compile.quantities import QUANTITIES, Motion
+from rttrr_pin.core.identification import base_parameters, parameter_names
+from rttrr_pin.core.scalars import Arithmetic
+from rttrr_pin.errors import InputError, ShapeError
+from rttrr_pin.validation import Sampler
+from support.robots import BUNDLED, driven
+from support.tolerances import CONSUMER, ROUNDING, norm_error
+from support.trees import random_tree
+
+TREES = {f"tree_{seed}": random_tree(seed, 5, ("revolute", "continuous", "prismatic", "fixed")) for seed in range(5)}
+TREES |= {f"any_{seed}": random_tree(seed, 4) for seed in range(3)}
+
+
+def half_angle(t: Fraction) -> tuple[Fraction, Fraction]:
+    """The sine and cosine of an angle whose half has the tangent t: rational where t is."""
+    return 2 * t / (1 + t * t), (1 - t * t) / (1 + t * t)
+
+
+RATIONAL = Arithmetic(
+    number=lambda value, error: Fraction(value),
+    column=lambda x: x,
+    sincos=half_angle,
+    sign=lambda x: (x > 0) - (x < 0),
+)
+"""Rational numbers; an angle is given by the tangent of its half. RTTRR's rotations and axes are exact in them."""
+
+
+def exact_rows(robot: Robot, states: int) -> list[list[Fraction]]:
+    """The regressor at rational states, no digit lost."""
+    rng = np.random.default_rng(1)
+    model, rows = robot.model, []
+    for _ in range(states):
+        q, v, a = ([Fraction(int(x), 16) for x in rng.integers(-40, 40, model.nv)] for _ in range(3))
+        numbers = QUANTITIES["regressor"].scalars(Motion(model, RATIONAL, q, v, a))
+        width = len(numbers) // model.nv
+        rows += [[Fraction(x) for x in numbers[k : k + width]] for k in range(0, len(numbers), width)]
+    return rows
+
+
+def reduced(rows: list[list[Fraction]]) -> tuple[list[int], list[list[Fraction]]]:
+    """Gauss-Jordan: the columns that do not depend on those before, and the rows by which they make all."""
+    pivots: list[int] = []
+    for column in range(len(rows[0])):
+        at = len(pivots)
+        k = next((k for k in range(at, len(rows)) if rows[k][column]), None)
+        if k is None:
+            continue
+        rows[at], rows[k] = rows[k], rows[at]
+        rows[at] = [x / rows[at][column] for x in rows[at]]
+        for other in range(len(rows)):
+            if other != at and (factor := rows[other][column]):
+                rows[other] = [x - factor * y for x, y in zip(rows[other], rows[at], strict=True)]
+        pivots.append(column)
+    return pivots, rows[: len(pivots)]
+
+
+@pytest.mark.parametrize("name", ["rttrr", "trr"])
+def test_basis_and_map_are_the_exact_ones(name: str) -> None:
+    robot = rttrr_pin.load(name)
+    pivots, rows = reduced(exact_rows(robot, 2 * 10 * len(robot.link_names) // robot.model.nv))
+    base = robot.base_parameters()
+    assert base.independent == tuple(pivots)
+    exact = np.array([[float(x) for x in row] for row in rows])
+    np.testing.assert_allclose(base.map, exact, rtol=0.0, atol=CONSUMER)
+    np.testing.assert_array_equal(base.map == 0.0, exact == 0.0)
+
+
+@pytest.mark.parametrize("effects", [False, True])
+@pytest.mark.parametrize("name", [*BUNDLED, *TREES])
+def test_they_are_as_many_as_the_regressors_rank_and_give_the_same_forces(name: str, effects: bool) -> None:
+    robot = driven(rttrr_pin.load(TREES.get(name, name)))
+    base = robot.base_parameters(effects)
+    count = 3 * len(base.names) // max(robot.model.nv, 1) + 1
+    drawn = Sampler(robot.model, "mixed", 7).draw(0, count)
+    Y = robot.regressor(drawn.q, drawn.v, drawn.a, effects)
+    norms = np.linalg.norm(Y.reshape(-1, len(base.names)), axis=0)
+    kept = base.regressor(Y).reshape(-1, base.rank)
+    assert np.linalg.matrix_rank(kept / norms[list(base.independent)], tol=CONSUMER) == base.rank
+    assert base.farthest_dependent < base.tolerance < base.nearest_independent
+    pi = robot.inertial_parameters(effects)
+    result = robot.inverse_dynamics(drawn.q, drawn.v, drawn.a)
+    tau = result.tau if effects else result.tau - result.tau_joint
+    size = np.abs(base.regressor(Y)) @ np.abs(base.of(pi)) + np.abs(Y) @ np.abs(pi)
+    assert np.linalg.norm(base.regressor(Y) @ base.of(pi) - tau) <= CONSUMER * np.linalg.norm(size)
+
+
+def test_a_six_axis_arm_has_the_published_number() -> None:
+    """Gautier and Khalil count 36 for the PUMA 560's geometry: axes that meet or are parallel, an offset wrist."""
+    turns = ("0 0 0", "-1.5707963267948966 0 0", "0 0 0", "-1.5707963267948966 0 0", "1.5707963267948966 0 0",
+             "-1.5707963267948966 0 0")  # fmt: skip
+    places = ("0 0 0", "0 0.2 0", "0.43 0 -0.09", "0.02 0.43 0", "0 0 0", "0 0 0")
+    links = "".join(f'<link name="link_{k}"/>' for k in range(7))
+    joints = "".join(
+        f'<joint name="joint_{k}" type="continuous"><parent link="link_{k - 1}"/><child link="link_{k}"/>'
+        f'<origin xyz="{place}" rpy="{turn}"/><axis xyz="0 0 1"/></joint>'
+        for k, (place, turn) in enumerate(zip(places, turns, strict=True), 1)
+    )
+    robot = rttrr_pin.load(f'<robot name="puma">{links}{joints}</robot>')
+    assert robot.base_parameters().rank == 36
+    # Armature of the first joint is no other than inertia about its axis; those of others are new, as friction is.
+    effects = robot.base_parameters(joint_effects=True)
+    assert effects.rank - 36 in (12 + 4, 12 + 5)
+
+
+def test_one_pendulum_by_hand() -> None:
+    """About y under gravity along z: m c_x, m c_z and I_yy; armature is I_yy again."""
+    robot = rttrr_pin.load(
+        '<robot name="pendulum"><link name="base"/><link name="bob"/><joint name="pivot" type="continuous">'
+        '<parent link="base"/><child link="bob"/><axis xyz="0 1 0"/></joint></robot>'
+    )
+    base = robot.base_parameters(joint_effects=True)
+    assert base.expressions == (
+        "m c_x of bob", "m c_z of bob", "I_yy of bob + armature of pivot", "damping of pivot", "friction of pivot"
+    )  # fmt: skip
+    assert base.summary().startswith("5 base parameters of 13; ")
+    assert base.to_dict()["independent"] == [1, 3, 6, 11, 12]
+
+
+def test_columns_that_motion_never_reaches_are_zero_in_the_map() -> None:
+    robot = rttrr_pin.load(TREES["tree_1"])
+    base = robot.base_parameters()
+    drawn = Sampler(robot.model, "mixed", 1).draw(0, 9)
+    Y = robot.regressor(drawn.q, drawn.v, drawn.a)
+    still = ~Y.any(axis=(0, 1))
+    assert not base.map[:, still].any()
+
+
+def test_the_condition_number_tells_a_poor_trajectory(rttrr: Robot) -> None:
+    base = rttrr.base_parameters()
+    drawn = Sampler(rttrr.model, "mixed", 0).draw(0, 200)
+    Y = rttrr.regressor(drawn.q, drawn.v, drawn.a)
+    W = base.regressor(Y).reshape(-1, base.rank)
+    assert base.condition(Y) == pytest.approx(np.linalg.cond(W))
+    assert 1.0 <= base.condition(Y, scaled=True) < base.condition(Y) < CONSUMER**-1
+    at_rest = rttrr.regressor(drawn.q, np.zeros((200, 5)), np.zeros((200, 5)))
+    assert base.condition(at_rest) == np.inf
+    assert base.condition(Y[:1]) == np.inf
+
+
+def test_columns_of_armature_and_friction_are_what_the_joints_take() -> None:
+    """Of followers too, by virtual work."""
+    for text in TREES.values():
+        robot = driven(rttrr_pin.load(text))
+        drawn = Sampler(robot.model, "mixed", 2).draw(0, 9)
+        states = drawn.q, drawn.v, drawn.a
+        width = 10 * len(robot.link_names)
+        own = robot.regressor(*states, joint_effects=True)[..., width:] @ robot.inertial_parameters(True)[width:]
+        assert norm_error(own, robot.inverse_dynamics(*states).tau_joint) <= ROUNDING
+        np.testing.assert_array_equal(robot.regressor(*states, joint_effects=True)[..., :width], robot.regressor(*states))
+        assert len(parameter_names(robot.model, True)) == len(robot.inertial_parameters(True))
+
+
+def test_a_robot_without_joints_has_none() -> None:
+    base = rttrr_pin.load(random_tree(1, 2, ("fixed",))).base_parameters(joint_effects=True)
+    assert (base.rank, base.expressions) == (0, ())
+
+
+def test_what_it_refuses(rttrr: Robot) -> None:
+    with pytest.raises(InputError, match="tolerance is 0"):
+        rttrr.base_parameters(tolerance=0.0)
+    base = rttrr.base_parameters()
+    wrong: Any = rttrr.inertial_parameters(joint_effects=True)
+    with pytest.raises(ShapeError, match="pass joint_effects"):
+        base.of(wrong)
+    with pytest.raises(InputError, match="tolerance"):
+        base_parameters(("m of x",), np.ones((1, 1, 1)), np.nan)
+
+
+def test_effects_do_not_move_the_inertial_basis(rttrr: Robot) -> None:
+    driven_too = rttrr.with_joint_effects({"joint_1": JointEffects(2.0, 1.0, 0.5)})
+    assert driven_too.base_parameters().independent == rttrr.base_parameters().independent
