@@ -139,9 +139,10 @@ class Robot:
 
         Args:
             outputs: what to compute, one name or several: `"tau"`, `"F"`, `"N"`, `"f"`, `"n"`, `"tau_joint"`,
-                `"mass_matrix"`, `"nonlinear_effects"`, `"gravity_torque"`, `"regressor"`, `"joint_regressor"` (of armature
-                and friction), `"link_jacobians"` and `"link_placements"` (of every link: velocity of the origin over
-                angular velocity, in {i}; R_0_i and p_0_i), `"dtau_dq"`, `"dtau_dv"`, `"dtau_da"`; and each of them with `"_bound"` behind, a bound on its rounding. The fewer, the faster.
+                `"mass_matrix"`, `"nonlinear_effects"`, `"gravity_torque"`, `"regressor"`, `"joint_regressor"` (of
+                armature and friction), `"link_jacobians"` and `"link_placements"` (of every link: velocity of the
+                origin over angular velocity, in {i}; R_0_i and p_0_i), `"dtau_dq"`, `"dtau_dv"`, `"dtau_da"`; and each
+                of them with `"_bound"` behind, a bound on its rounding. The fewer, the faster.
             emitter: `"llvm"` (machine code), `"numpy"` (wherever NumPy runs) or `"c"` (by the C compiler);
                 None for what is there.
 
@@ -344,7 +345,7 @@ class Robot:
         Args:
             mass: of the body [kg].
             com: its centre of mass from the origin of the link that carries it, in that link's axes, (3,) [m].
-            inertia: its tensor about its centre of mass in the same axes, (3, 3) [kg m^2], `inertia[0, 1]` URDF's `ixy`;
+            inertia: its tensor about its centre of mass in the same axes, (3, 3) [kg m^2], with URDF's signs;
                 None for a point.
             link: the link that carries it; None: the tool, that is the robot's only last link.
             name: of the new link; its joint is called so with `_joint` behind.

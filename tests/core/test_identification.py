@@ -11,6 +11,7 @@ import pytest
 import rttrr_pin
 from rttrr_pin import JointEffects, Robot
 from rttrr_pin.compile.quantities import QUANTITIES, Motion
+from rttrr_pin.core.dual import Dual
 from rttrr_pin.core.identification import base_parameters, parameter_names
 from rttrr_pin.core.scalars import Arithmetic
 from rttrr_pin.errors import InputError, ShapeError
@@ -23,16 +24,38 @@ TREES = {f"tree_{seed}": random_tree(seed, 5, ("revolute", "continuous", "prisma
 TREES |= {f"any_{seed}": random_tree(seed, 4) for seed in range(3)}
 
 
-def half_angle(t: Fraction) -> tuple[Fraction, Fraction]:
+class Rational:
+    """A rational number; a double beside it, such as 0.0, is the number that it is."""
+
+    def __init__(self, x: Any) -> None:
+        self.x = x.x if isinstance(x, Rational) else Fraction(x)
+
+    def __add__(self, other: Any) -> Any:
+        return NotImplemented if isinstance(other, Dual) else Rational(self.x + Rational(other).x)
+
+    def __mul__(self, other: Any) -> Any:
+        return NotImplemented if isinstance(other, Dual) else Rational(self.x * Rational(other).x)
+
+    def __neg__(self) -> Rational:
+        return Rational(-self.x)
+
+    def __sub__(self, other: Any) -> Any:
+        return self.__add__(-other)
+
+    def __rsub__(self, other: Any) -> Any:
+        return (-self).__add__(other)
+
+    __radd__, __rmul__ = __add__, __mul__
+
+
+def half_angle(angle: Any) -> tuple[Rational, Rational]:
     """The sine and cosine of an angle whose half has the tangent t: rational where t is."""
-    return 2 * t / (1 + t * t), (1 - t * t) / (1 + t * t)
+    t = Rational(angle).x
+    return Rational(2 * t / (1 + t * t)), Rational((1 - t * t) / (1 + t * t))
 
 
 RATIONAL = Arithmetic(
-    number=lambda value, error: Fraction(value),
-    column=lambda x: x,
-    sincos=half_angle,
-    sign=lambda x: (x > 0) - (x < 0),
+    number=lambda value, error: Rational(value), column=Rational, sincos=half_angle, sign=lambda x: Rational(1)
 )
 """Rational numbers; an angle is given by the tangent of its half. RTTRR's rotations and axes are exact in them."""
 
@@ -42,10 +65,10 @@ def exact_rows(robot: Robot, states: int) -> list[list[Fraction]]:
     rng = np.random.default_rng(1)
     model, rows = robot.model, []
     for _ in range(states):
-        q, v, a = ([Fraction(int(x), 16) for x in rng.integers(-40, 40, model.nv)] for _ in range(3))
+        q, v, a = ([Rational(Fraction(int(x), 16)) for x in rng.integers(-40, 40, model.nv)] for _ in range(3))
         numbers = QUANTITIES["regressor"].scalars(Motion(model, RATIONAL, q, v, a))
         width = len(numbers) // model.nv
-        rows += [[Fraction(x) for x in numbers[k : k + width]] for k in range(0, len(numbers), width)]
+        rows += [[Rational(x).x for x in numbers[k : k + width]] for k in range(0, len(numbers), width)]
     return rows
 
 
@@ -158,7 +181,9 @@ def test_columns_of_armature_and_friction_are_what_the_joints_take() -> None:
         width = 10 * len(robot.link_names)
         own = robot.regressor(*states, joint_effects=True)[..., width:] @ robot.inertial_parameters(True)[width:]
         assert norm_error(own, robot.inverse_dynamics(*states).tau_joint) <= ROUNDING
-        np.testing.assert_array_equal(robot.regressor(*states, joint_effects=True)[..., :width], robot.regressor(*states))
+        np.testing.assert_array_equal(
+            robot.regressor(*states, joint_effects=True)[..., :width], robot.regressor(*states)
+        )
         assert len(parameter_names(robot.model, True)) == len(robot.inertial_parameters(True))
 
 

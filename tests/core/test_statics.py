@@ -13,10 +13,11 @@ from rttrr_pin import Robot, Wrench
 from rttrr_pin.core.joints import CONTINUOUS, PLANAR
 from rttrr_pin.errors import InputError, ShapeError, UnknownNameError
 from rttrr_pin.validation import Sampler
+from support.recursion import recursion
 from support.tolerances import ROUNDING, norm_error
 from support.trees import random_tree
 
-STATES = 5
+STATES = 4
 POINT = (0.3, -0.2, 0.7)
 FORCE, MOMENT = (10.0, -20.0, 30.0), (1.0, 2.0, -3.0)
 
@@ -37,7 +38,7 @@ def pin_q(robot: Robot, q: np.ndarray) -> np.ndarray:
 
 
 @pytest.mark.parametrize("base", ["fixed", "floating"])
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(3))
 def test_jacobians_and_placements_are_pinocchios(seed: int, base: Any) -> None:
     robot = rttrr_pin.load(random_tree(seed, 6, mimics=False), base=base)
     root = (pin.JointModelFreeFlyer(),) if base == "floating" else ()
@@ -59,14 +60,14 @@ def test_jacobians_and_placements_are_pinocchios(seed: int, base: Any) -> None:
 
 
 @pytest.mark.parametrize("axes", ["link", "base"])
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(3))
 def test_a_wrench_takes_what_the_recursion_says_of_a_payload(seed: int, axes: Any) -> None:
     """At the link's origin the same; elsewhere, with the moment of the force about the origin; followers too."""
     robot = rttrr_pin.load(random_tree(seed, 6))
     q, v, a = drawn(robot)
     for link in robot.link_names:
         wrench = Wrench(FORCE, MOMENT, link, axes)
-        without, with_it = (robot.inverse_dynamics(q, v, a, payload).tau for payload in (None, wrench))
+        without, with_it = (recursion(robot, q, v, a, payload).tau for payload in (None, wrench))
         size = np.linalg.norm(without) + np.linalg.norm(with_it) + np.linalg.norm([*FORCE, *MOMENT])
         assert np.linalg.norm(without + robot.wrench_torque(q, wrench) - with_it) <= ROUNDING * size
     R = robot.compile("link_placements")(q)[:, -1, :, :3]

@@ -186,7 +186,10 @@ QUANTITIES: dict[str, Quantity] = {
         "qva", lambda model: (model.nv, 10 * len(model.links)), _regressor, of_links=True, by_steps=False
     ),
     "joint_regressor": Quantity(
-        "qva", lambda model: (model.nv, 3 * sum(joint.nv > 0 for joint in model.joints)), _joint_regressor, by_steps=False
+        "qva",
+        lambda model: (model.nv, 3 * sum(joint.nv > 0 for joint in model.joints)),
+        _joint_regressor,
+        by_steps=False,
     ),
     "link_jacobians": Quantity(
         "q", lambda model: (len(model.links), 6, model.nv), _link_jacobians, of_links=True, by_steps=False
