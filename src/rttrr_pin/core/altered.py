@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import accumulate
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -58,8 +59,8 @@ def with_locked(model: Model, q: Mapping[str, ArrayLike]) -> Model:
             got=values.shape,
             wanted=f"({values.shape[-1]},)",
         )
-    ends = np.cumsum([joint.nq for joint in chosen])[:-1]
-    locks = {joint.name: tuple(own.tolist()) for joint, own in zip(chosen, np.split(values, ends), strict=True)}
+    begins = accumulate((joint.nq for joint in chosen), initial=0)
+    locks = {own.name: tuple(values[at : at + own.nq].tolist()) for at, own in zip(begins, chosen, strict=False)}
 
     def locked(joint: Joint) -> Joint:
         leader = joint if joint.mimic is None else model.joints[joint.mimic.joint]

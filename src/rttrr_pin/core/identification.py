@@ -13,6 +13,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 from typing import Any
 
 import numpy as np
@@ -149,9 +150,9 @@ def random_motion(model: Model, columns: int) -> tuple[Array, Array, Array]:
     rng = np.random.default_rng(0)
     states = Y_OVER * columns // max(model.nv, 1) + 1
     q, v, a = (rng.uniform(-largest, largest, (states, model.nv)) for largest in LARGEST)
-    ends = np.cumsum([joint.nv for joint in model.moving])[:-1]
-    own = zip(model.moving, np.split(q, ends, axis=1), strict=True) if model.moving else ()
-    return np.hstack([np.empty((states, 0)), *(joint.type.coordinates_at(x) for joint, x in own)]), v, a
+    begins = accumulate((joint.nv for joint in model.moving), initial=0)
+    own = [x.type.coordinates_at(q[:, at : at + x.nv]) for at, x in zip(begins, model.moving, strict=False)]
+    return np.hstack([np.empty((states, 0)), *own]), v, a
 
 
 def base_parameters(names: Sequence[str], Y: Array, tolerance: float) -> BaseParameters:
@@ -187,7 +188,7 @@ def base_parameters(names: Sequence[str], Y: Array, tolerance: float) -> BasePar
     return BaseParameters(
         names=tuple(names),
         independent=tuple(kept),
-        map=B,
+        map=np.asarray(B, dtype=np.float64),
         tolerance=tolerance,
         farthest_dependent=float(dependent.max(initial=0.0)),
         nearest_independent=float(distances[kept].min(initial=math.inf)),

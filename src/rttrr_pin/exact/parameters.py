@@ -166,8 +166,9 @@ def _as_it_moves(joint: Joint) -> Joint:
 
 def _followed(model: Model, joint: Joint | None) -> tuple[str, float, float] | None:
     """The joint that a joint follows by its name, as links can stand in another order than the file's; and how."""
-    mimic = joint and joint.mimic
-    return mimic and (model.joints[mimic.joint].name, mimic.multiplier, mimic.offset)
+    if joint is None or joint.mimic is None:
+        return None
+    return model.joints[joint.mimic.joint].name, joint.mimic.multiplier, joint.mimic.offset
 
 
 def _same(own: object, read: object, *names: str) -> bool:
