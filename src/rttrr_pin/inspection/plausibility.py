@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.inspection.cases import DENSITIES, Case, cases, ellipsoid_density
+from rttrr_pin.inspection.cases import DENSITIES, LARGEST_GYRATION, Case, cases, ellipsoid_density
 from rttrr_pin.inspection.checks import Observation, Severity, Subject, check
 from rttrr_pin.inspection.parser_rules import merged_links
 from rttrr_pin.inspection.readings import LENGTH_UNITS, cause_of
@@ -45,7 +45,7 @@ def too_wide(subject: Subject) -> Iterator[Observation]:
 
 
 def _about_axis(subject: Subject, case: Case) -> str:
-    """What a fixed base feels of a link on its first joint."""
+    """That a fixed base does not feel what is wrong with a link on its first joint, where that is so."""
     document = subject.document
     joint = document.carried_by.get(case.link.name)
     anchored = merged_links(document)[document.root].members
@@ -53,6 +53,8 @@ def _about_axis(subject: Subject, case: Case) -> str:
         return ""
     axis = np.array(joint.axis.floats) / np.linalg.norm(joint.axis.floats)
     gyration = np.sqrt(max(axis @ case.inertial.inertia @ axis, 0.0) / case.mass)
+    if gyration > LARGEST_GYRATION * case.reach:
+        return ""
     return f"; on a fixed base only the moment about {joint.name} counts, and its radius is {gyration:.3g} m"
 
 

@@ -44,6 +44,9 @@ SIZE = 3.0
 SLIGHT = (0.01, 100.0)
 """Between them, a factor may be that of the link and not of its unit, unless its shape is exact."""
 
+GUESS = 5e-4
+"""Tensors that are larger than plausible by less, such as 1000 times, may be estimates and in no other unit."""
+
 ROUND = 1e-4
 """How near a length is to one of three digits to be that."""
 
@@ -374,7 +377,8 @@ def _like_links(case: Case, reading: Reading, variant: Variant) -> bool:
         return False
     if variant.tensor is None or not variant.tensor.any():
         return True
-    if reading.variants is not unit or variant.slight:
+    guess = variant.mass == 1.0 and np.trace(variant.tensor) > GUESS * np.trace(case.inertial.tensor)
+    if reading.variants is not unit or variant.slight or guess:
         return False
     mass = case.mass * variant.mass
     if case.solids:
