@@ -225,9 +225,9 @@ def test_several_shifts_of_one_decimal_point_are_not_told() -> None:
     assert (found.id, found.cause) == ("P105", "")
 
 
-@pytest.mark.parametrize(("factor", "cause"), [(1e9, "unit"), (1e7, "unit"), (1e6, "unit"), (1e4, ""), (1e3, "")])
+@pytest.mark.parametrize(("factor", "cause"), [(1e9, "unit"), (1e7, "unit"), (1e6, "unit"), (1e4, "unit"), (1e3, "")])
 def test_a_unit_is_named_without_a_drawing(factor: float, cause: str) -> None:
-    """A bar of 0.3 x 0.04 x 0.03 m. Both kg cm^2 and lb in^2 would suit; 1000 times too large may be a guess."""
+    """A bar of 0.3 x 0.04 x 0.03 m; what is 1000 times too large may be a guess."""
     body = RigidBody.of(Box((0.3, 0.04, 0.03)), 2000.0)
     x, y, z = (f"{moment * factor:.9g}" for moment in body.inertia.diagonal())
     (found,) = findings_of(arm(inertial(body.mass, (x, 0, 0, y, 0, z))))

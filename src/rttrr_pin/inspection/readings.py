@@ -44,7 +44,7 @@ SIZE = 3.0
 SLIGHT = (0.01, 100.0)
 """Between them, a factor may be that of the link and not of its unit, unless its shape is exact."""
 
-GUESS = 5e-4
+GUESS = 2e-4
 """Tensors that are larger than plausible by less, such as 1000 times, may be estimates and in no other unit."""
 
 ROUND = 1e-4
