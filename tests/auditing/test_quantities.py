@@ -297,6 +297,13 @@ def test_angles_in_code(tmp_path: Path) -> None:
     assert_wrong(only(audited(tmp_path, head, (about, right.replace("q2 - q1", "q2 + q1")), language="python")))
 
 
+@pytest.mark.parametrize("text", ["m*l*cos(q1)", "m*l*cos(q1 + q2)", "M*qdd1/cos(2*q1)"])
+def test_a_length_has_no_cosine(text: str, tmp_path: Path) -> None:
+    component = only(audited(tmp_path, cart_pole(), ('quantity = "tau"\njoint = 1', text), language="python"))
+    assert component.verdict is Verdict.DIFFERS and component.evidence is not None
+    assert component.evidence.excluded is None and component.proven
+
+
 TAU = (
     r"m_2 l_2^2 (\ddot{q}_1 + \ddot{q}_2) + m_2 l_1 l_2 c_2 \ddot{q}_1 + m_2 l_1 l_2 s_2 \dot{q}_1^2 + m_2 l_2 g c_{12}"
 )

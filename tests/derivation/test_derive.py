@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import itertools
+import re
 import subprocess
 from dataclasses import replace
 from fractions import Fraction
@@ -602,6 +603,49 @@ def test_files_and_standard_output(tmp_path: Path, capsys: pytest.CaptureFixture
     assert files["latex"].read_text().startswith("\\documentclass")
     assert files["python"].read_text().startswith('"""Dynamic model of trr')
     assert sorted(tmp_path.iterdir()) == sorted(files.values())
+
+
+LONG_NAMES = {
+    "words": "a very long robot name " * 20,
+    "one word": "x" * 3000,
+    "signs": "\u03b8*/ ??/" * 100,
+    "a digit": "2R",
+}
+
+
+@pytest.mark.parametrize("kind", LONG_NAMES)
+@pytest.mark.parametrize("numbers", [[], ["--numbers"]], ids=["letters", "numbers"])
+def test_programs_take_any_name_of_a_robot(kind: str, numbers: list[str], tmp_path: Path) -> None:
+    text = robot("two-joints").model.urdf
+    assert text is not None
+    (tmp_path / "a.urdf").write_text(re.sub('robot name="[^"]*"', f"robot name={quoteattr(LONG_NAMES[kind])}", text))
+    source, code = tmp_path / "a.c", tmp_path / "a.py"
+    words = ["derive", str(tmp_path / "a.urdf"), "--c", str(source), "--python", str(code), "-q", *numbers]
+    assert main([*words, "--quantity", "tau", "--quantity", "C"]) == 0
+    compile(code.read_text(), "a.py", "exec")
+    flags = ("-std=c99", "-O0", "-Wall", "-Wextra", "-Werror", "-pedantic", "-fsyntax-only")
+    done = subprocess.run([*compiler(), *flags, source], capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+def test_formulas_are_printed_where_they_fit_the_screen(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Whole quantities in order; what is printed is the polynomial."""
+    derivation = symbolic.derive(robot("rttrr"), ["n", "g"])
+    ring, names = derivation.ring, derivation.symbols
+    for columns, height in ((80, 25), (200, 60), (40, 10)):
+        monkeypatch.setenv("COLUMNS", str(columns))
+        monkeypatch.setenv("LINES", str(height))
+        assert main(["derive", "--quantity", "n", "--quantity", "g"]) == 0
+        out = capsys.readouterr().out
+        shown = re.findall(r"^g_(\d) = (.*(?:\n +.*)*)", out, re.M)
+        assert len(shown) == 5 and "too long for this screen: n" in out
+        assert max(map(len, re.search(r"^g_1 = .*?(?=\nto)", out, re.M | re.S)[0].split("\n"))) <= columns
+        for k, text in shown:
+            code = re.sub(r"(?<=[\w)]) (?=[\w(])", "*", " ".join(text.split("\ntoo")[0].split())).replace("^", "**")
+            value = eval(code, {name: ring[name] for name in names})
+            assert ring.reduced(value) == ring.polynomial(derivation.quantities["g"].terms[int(k) - 1,])
 
 
 UNUSABLE = {

@@ -98,7 +98,11 @@ class Witness:
         """The numbers of a component, such as F5z, as printed and as corrected."""
         solved = parts_of(name)[0] == "a"
         floats, intervals = self._solved_values if solved else self._drawn_values
-        sums = sums_of_angles(printed.names | corrected.names)
+        sums = [
+            angle
+            for angle in sums_of_angles(printed.names | corrected.names)
+            if all(f"s_{part.removeprefix('m')}" in floats for part in angle.split("_"))
+        ]
         add_sums(floats, sums)
         with precision(BITS):
             add_sums(intervals, sums)

@@ -50,7 +50,9 @@ def with_names(known: Mapping[str, Symbol], used: Iterable[str]) -> Mapping[str,
     """The symbols with those of other names: sums of angles, and unknown ones."""
     names = dict.fromkeys(name for name in used if name not in known)
     symbols = dict(known)
-    for angle in sums_of_angles(names):
+    sums = sums_of_angles(names)
+    lengths = {part.removeprefix("m") for angle in sums for part in angle.split("_")}  # of which there is no cosine
+    for angle in [*sorted(part for part in lengths if f"c_{part}" not in known), *sums]:
         subscript = _subscript(angle.split("_"))
         for letter, role in (("s", Role.SINE), ("c", Role.COSINE)):
             symbols[f"{letter}_{angle}"] = Symbol(f"{letter}_{angle}", f"{letter}_{{{subscript}}}", role)

@@ -15,13 +15,16 @@ from rttrr_pin.core.model import STANDARD_GRAVITY, Link, Model
 from rttrr_pin.core.solids import rotation
 from rttrr_pin.derivation.numbers import exact_number
 from rttrr_pin.derivation.symbolic_robot import AXES, Slot
-from rttrr_pin.derivation.tables import Table
+from rttrr_pin.derivation.tables import Table, shown
 
 Number = Callable[[Slot], float]
 """The number that stands in a slot; 0 where the table says nothing."""
 
 ENTRIES: Sequence[tuple[int, int]] = ((0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2))
 """Indices in the tensor, in the order of a link's `inertia`: xx, xy, xz, yy, yz, zz."""
+
+LARGEST = 1e100
+"""Of any number of a robot: its powers are doubles too."""
 
 MOTIONS = (("revolute", "about"), ("prismatic", "along"))
 
@@ -58,6 +61,7 @@ def model_of(links: Sequence[Table], number: Number, has_gravity: bool) -> Model
         EquationError: names, parents, joints or masses do not make a robot.
     """
     names = link_names(links)
+    number = _finite(links, number)
     bodies, joints = [], []
     for i, link in enumerate(links):
         if names[i] in ("base", *names[:i]):
@@ -79,6 +83,19 @@ def model_of(links: Sequence[Table], number: Number, has_gravity: bool) -> Model
     return Model("equations", Link("base"), tuple(bodies), tuple(joints), gravity, urdf)
 
 
+def _finite(links: Sequence[Table], number: Number) -> Number:
+    """The same numbers, refused where they are none that can be computed with."""
+
+    def checked(slot: Slot) -> float:
+        value = number(slot)
+        if not abs(value) <= LARGEST:
+            table = links[int(slot[1])] if slot[0] != "gravity" else links[0]
+            raise table.error(f"{slot[0]} is {value} with the numbers of the symbols: expected at most {LARGEST:g}")
+        return value
+
+    return checked
+
+
 def _joint(link: Table, i: int, parent: int, number: Number) -> Joint:
     motion, axis = joint_motion(link)
     turn, p = _angles(link), np.array([number(("origin", i, x)) for x in range(3)])
@@ -95,7 +112,7 @@ def _angles(link: Table) -> tuple[float, ...]:
             numerator, _, denominator = text.partition("/")
             angles.append(math.radians(float(exact_number(numerator) / exact_number(denominator or "1"))))
         except (ArithmeticError, ValueError) as error:
-            raise link.error(f"rpy_degrees has {text!r}: expected a number of degrees") from error
+            raise link.error(f"rpy_degrees has {shown(text)}: expected a number of degrees") from error
     return tuple(angles)
 
 

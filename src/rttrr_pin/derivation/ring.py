@@ -6,6 +6,7 @@ A closed form is such a polynomial: sines and cosines are symbols of their own, 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping
 from fractions import Fraction
 from typing import Any
@@ -125,7 +126,15 @@ def exact(value: float) -> fmpq:
     return fmpq(*float(value).as_integer_ratio())
 
 
-def evaluate(terms: Expression, values: Mapping[str, Any], number: Callable[[Fraction], Any] = float) -> Any:
+def nearest(x: Fraction) -> float:
+    """The nearest double, which may be infinite."""
+    try:
+        return float(x)
+    except OverflowError:
+        return math.inf if x > 0 else -math.inf
+
+
+def evaluate(terms: Expression, values: Mapping[str, Any], number: Callable[[Fraction], Any] = nearest) -> Any:
     """The value of a polynomial, summed in the order of its terms.
 
     Args:

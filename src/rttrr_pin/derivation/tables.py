@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -114,6 +115,12 @@ _WORDS: Mapping[type, str] = {
 }
 
 
+PART = r"""(?:[\w-]++|"[^"\n]{0,40}"|'[^'\n]{0,40}')"""
+
+LONG_KEY = re.compile(rf"(?<![\w\"'.-]){PART}(?:[ \t]*\.[ \t]*{PART}){{50}}")
+"""A dotted key of TOML that no file of equations has."""
+
+
 def shown(value: object) -> str:
     """A value as a message can show it."""
     return shortened(repr(value))
@@ -173,6 +180,8 @@ def _within(value: Any) -> Iterator[Any]:
 
 
 def _toml(text: str, source: str) -> Any:
+    if LONG_KEY.search(text):  # which takes tomllib time with the square of its length
+        raise EquationError("has a key with more than 50 parts: write it flat", source=source)
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:

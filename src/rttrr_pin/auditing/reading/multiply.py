@@ -84,7 +84,7 @@ def _multiplied(factors: Iterable[Factor], note: str, text: str, ways: Ways) -> 
                 coefficient *= _power(divisor, factor, True)
             brackets += [(body, terms)] * factor.power
         if not fits(coefficient):
-            raise UnreadableError("its numbers multiply to more digits than any quantity has", factor.start)
+            raise _too_long(factor.start)
     unknown = tuple(symbol.unknown for symbol in symbols if symbol.unknown)
     notes = joined(note, *(symbol.note for symbol in symbols))
     return Reading(coefficient, factors_of(exponents), notes, unknown), brackets
@@ -108,6 +108,10 @@ def constant(terms: Terms) -> Fraction | None:
     return total
 
 
+def _too_long(start: int) -> UnreadableError:
+    return UnreadableError("its numbers multiply to more digits than any quantity has", start)
+
+
 def _divisor(terms: Terms, start: int) -> Fraction:
     value = constant(terms)
     if value is None:
@@ -124,21 +128,23 @@ def _expanded(product: Product, choices: Sequence[Sequence[Reading]], brackets: 
         alternatives = [*choices, *(terms[i].readings for (_, terms), i in zip(brackets, picked, strict=True))]
         if prod(map(len, alternatives)) > MOST:
             raise too_many_ways(product.start)
-        readings = dict.fromkeys(map(_product, itertools.product(*alternatives)))
-        if not all(fits(reading.coefficient) for reading in readings):
-            raise UnreadableError("its numbers multiply to more digits than any quantity has", product.start)
+        readings = dict.fromkeys(_product(each, product.start) for each in itertools.product(*alternatives))
         expanded.append(PrintedTerm(_shown(product, brackets, picked, text), tuple(readings)))
     return tuple(expanded)
 
 
-def _product(readings: Sequence[Reading]) -> Reading:
+def _product(readings: Sequence[Reading], start: int) -> Reading:
     """The product of readings; notes and unknown spellings are those of all."""
     exponents: Counter[str] = Counter()
     for reading in readings:
         exponents.update(dict(reading.factors))
     notes = dict.fromkeys(reading.note for reading in readings)
     unknown = dict.fromkeys(spelling for reading in readings for spelling in reading.unknown)
-    coefficient = prod((reading.coefficient for reading in readings), start=Fraction(1))
+    coefficient = Fraction(1)
+    for reading in readings:
+        coefficient *= reading.coefficient
+        if not fits(coefficient):
+            raise _too_long(start)
     return Reading(coefficient, factors_of(exponents), joined(*notes), tuple(unknown))
 
 
