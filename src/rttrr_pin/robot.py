@@ -12,7 +12,14 @@ from numpy.typing import ArrayLike
 from rttrr_pin.core import altered
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dynamics import bodies
-from rttrr_pin.core.identification import EFFECTS, BaseParameters, base_parameters, parameter_names, random_motion
+from rttrr_pin.core.identification import (
+    EFFECTS,
+    BaseParameters,
+    as_forces,
+    base_parameters,
+    parameter_names,
+    random_motion,
+)
 from rttrr_pin.core.inertia import SpatialInertia
 from rttrr_pin.core.inputs import Coordinates, coordinates, finite, real, vectors
 from rttrr_pin.core.joint import JointEffects
@@ -213,11 +220,11 @@ class Robot:
         Args:
             joint_effects: whether armature, damping and Coulomb friction are parameters too; then tau = Y_b pi_b.
             tolerance: how far a column may be from the span of those before it to depend on them, relative to the
-                largest of its kind.
+                largest of its kind (`BaseParameters.tolerance`).
         """
         names = parameter_names(self.model, joint_effects)
         Y = self.regressor(*random_motion(self.model, len(names)), joint_effects)
-        return base_parameters(names, Y, tolerance)
+        return base_parameters(names, as_forces(self.model, Y), tolerance)
 
     def jacobian(
         self,

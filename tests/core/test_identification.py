@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 from typing import Any
 
@@ -206,3 +207,14 @@ def test_what_it_refuses(rttrr: Robot) -> None:
 def test_effects_do_not_move_the_inertial_basis(rttrr: Robot) -> None:
     driven_too = rttrr.with_joint_effects({"joint_1": JointEffects(2.0, 1.0, 0.5)})
     assert driven_too.base_parameters().independent == rttrr.base_parameters().independent
+
+
+@pytest.mark.parametrize("scale", [1e-30, 1e-6, 1e6, 1e30])
+@pytest.mark.parametrize("name", ["rttrr", "tree_2"])
+def test_a_robot_of_any_size_has_the_same_basis(name: str, scale: float) -> None:
+    model = rttrr_pin.load(TREES.get(name, name)).model
+    joints = tuple(replace(joint, p=joint.p * scale) for joint in model.joints)
+    base = Robot(replace(model, joints=joints, document=None)).base_parameters(joint_effects=True)
+    assert base.independent == Robot(model).base_parameters(joint_effects=True).independent
+    assert base.farthest_dependent < base.tolerance**1.2
+    assert base.nearest_independent > base.tolerance**0.5

@@ -17,7 +17,7 @@ from itertools import accumulate
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.inputs import finite, real
@@ -30,11 +30,12 @@ INERTIAL = ("m", "m c_x", "m c_y", "m c_z", "I_xx", "I_xy", "I_yy", "I_xz", "I_y
 EFFECTS = ("armature", "damping", "friction")
 """The three of a joint."""
 
-KINDS = dict.fromkeys(INERTIAL[1:4], "first moment") | dict.fromkeys(INERTIAL[4:], "tensor")
-"""Parameters that are measured in one unit, so that their columns can be compared; others are a kind of their own."""
+KINDS = {"m": "mass"} | dict.fromkeys(INERTIAL[1:4], "first moment") | dict.fromkeys(INERTIAL[4:], "tensor")
+"""Parameters whose columns can be compared: what of one rounds can be as large as another is. Those of a joint's
+effects hardly round: each is a kind of its own."""
 
-LARGEST = (math.pi, 3.0, 10.0)
-"""Of coordinates, rates and accelerations that are drawn: such that all terms of tau are of about one size."""
+GRAVITY = 10.0
+"""Of this size are the accelerations that are drawn, also where there is no field [m/s^2]."""
 
 Y_OVER = 3
 """Rows for each column: random states tell the rank of a robot with probability 1, and well if there are some more."""
@@ -50,7 +51,7 @@ class BaseParameters:
         map: B with pi_b = B pi, (rank, parameters); of the basis' own columns the identity, and zero for parameters
             that no motion tells.
         tolerance: a column depends on those before it if it is no farther from their span, relative to the largest
-            column of its kind (masses, first moments, tensors, each effect of joints).
+            column of its kind (masses, first moments, tensors; a joint's effect is compared with its own column).
         farthest_dependent: the largest such distance of a column that was found to depend on those before.
         nearest_independent: the smallest of one that was not; the rank is certain where both are far apart.
     """
@@ -146,13 +147,36 @@ def parameter_names(model: Model, joint_effects: bool) -> tuple[str, ...]:
 
 
 def random_motion(model: Model, columns: int) -> tuple[Array, Array, Array]:
-    """q, v, a, (N, nq) and (N, nv), of so many states that a regressor of so many columns shows its rank."""
+    """q, v, a, (N, nq) and (N, nv), of so many states that a regressor of so many columns shows its rank.
+
+    With L the mean distance between joints and g that of gravity, lengths are drawn up to L, rates up to sqrt(g / L) of
+    angles and sqrt(g L) of lengths, so that all terms of tau are of about one size in a robot of any size.
+    """
     rng = np.random.default_rng(0)
     states = Y_OVER * columns // max(model.nv, 1) + 1
-    q, v, a = (rng.uniform(-largest, largest, (states, model.nv)) for largest in LARGEST)
+    turns, L = _turns(model), _length(model)
+    unit = np.where(turns, 1.0, L)
+    largest = (unit * np.where(turns, math.pi, 1.0), unit * math.sqrt(GRAVITY / L), unit * (GRAVITY / L))
+    q, v, a = (rng.uniform(-1.0, 1.0, (states, model.nv)) * size for size in largest)
     begins = accumulate((joint.nv for joint in model.moving), initial=0)
     own = [x.type.coordinates_at(q[:, at : at + x.nv]) for at, x in zip(begins, model.moving, strict=False)]
     return np.hstack([np.empty((states, 0)), *own]), v, a
+
+
+def as_forces(model: Model, Y: Array) -> Array:
+    """Rows of a regressor in one unit: those of moments divided by a length, so that they compare with forces."""
+    return Y / np.where(_turns(model), _length(model), 1.0)[:, None]
+
+
+def _turns(model: Model) -> NDArray[np.bool_]:
+    """For each rate, whether it is of an angle."""
+    return np.array([turn for joint in model.moving for turn in joint.type.rotations], dtype=bool)
+
+
+def _length(model: Model) -> float:
+    """The mean distance between joints that are apart [m]."""
+    lengths = [length for joint in model.joints if (length := float(np.linalg.norm(joint.p)))]
+    return sum(lengths) / len(lengths) if lengths else 1.0
 
 
 def base_parameters(names: Sequence[str], Y: Array, tolerance: float) -> BaseParameters:
@@ -162,7 +186,7 @@ def base_parameters(names: Sequence[str], Y: Array, tolerance: float) -> BasePar
 
     Args:
         names: of the columns.
-        Y: the regressor at random states, (N, nv, columns).
+        Y: the regressor at random states, (N, nv, columns), its rows in one unit.
         tolerance: see `BaseParameters`.
     """
     if not 0.0 < tolerance < 1.0:
@@ -198,7 +222,7 @@ def base_parameters(names: Sequence[str], Y: Array, tolerance: float) -> BasePar
 def _of_kind(names: Sequence[str], norms: Array) -> Array:
     """For each column the norm of the largest of its kind; 1 where all are zero."""
     parameters = [name.partition(" of ")[0] for name in names]
-    kinds = [KINDS.get(parameter, parameter) for parameter in parameters]
+    kinds = [KINDS.get(parameter, name) for name, parameter in zip(names, parameters, strict=True)]
     largest: dict[str, float] = {}
     for kind, norm in zip(kinds, norms.tolist(), strict=True):
         largest[kind] = max(norm, largest.get(kind, 0.0))
