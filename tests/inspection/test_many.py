@@ -51,6 +51,7 @@ def test_exit_codes_of_folders(
     for name in ROBOTS.keys() - set(left):
         (folder / name).unlink()
     assert main(["inspect", str(folder), *(word.replace("FOLDER", str(folder)) for word in words)]) == code
+    assert bool(capsys.readouterr().out) == (code != 2 or not words)
 
 
 def test_a_folder_as_json(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -12,7 +12,7 @@ from rttrr_pin.inspection import many
 from rttrr_pin.inspection.many import Demands, Entry, inspect_each
 from rttrr_pin.inspection.parsers import PARSERS
 from rttrr_pin.inspection.report import repair_data, repair_summary
-from rttrr_pin.inspection.run import Inspection, inspect_document, repair
+from rttrr_pin.inspection.run import Inspection, chosen, inspect_document, repair
 from rttrr_pin.reporting.files import write_whole
 from rttrr_pin.reporting.options import check_targets, flag, outcome, robot, target
 from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json, write_text
@@ -65,6 +65,7 @@ def inspect(
     reports = {"--json": json, "--sarif": sarif, "--junit": junit}
     check_targets(reports, robots.values() or [robot])
     check_targets(reports | {"--fix": fix})
+    chosen(select, ignore)  # that there are such checks, before the first of many files is read
     console = Output(quiet=quiet or "-" in reports.values(), soft_wrap=True)
 
     def look(source: str | Path) -> Inspection:

@@ -78,14 +78,19 @@ def inspect_each(robots: Mapping[str, Path], inspect: Callable[[Path], Inspectio
 
 def summary(entries: Sequence[Entry], demands: Demands, width: int) -> str:
     """A row for each robot, then what stops those that could not be read, then the sum."""
-    heads = ("robot", "verdict", "errors", "warnings", "notes", "parsers that load another robot, or none")
+    heads = ("robot", "verdict", "errors", "warnings", "notes", "not loaded as written by")
     rows = [(entry.name, entry.verdict(demands), *_counts(entry)) for entry in entries]
     counts = Counter(entry.verdict(demands) for entry in entries)
     return "\n".join(
         [
             *columns(heads, rows, width),
             "",
-            *dict.fromkeys(f"{entry.name}: {entry.defect}" for entry in entries if entry.defect),
+            *(f"{entry.name}: {entry.defect}" for entry in entries if entry.defect),
+            *(
+                f"{entry.name}: {', '.join(failing)} would not load it as written"
+                for entry in entries
+                if entry.result is not None and (failing := demands.failing(entry.result))
+            ),
             f"{counts['PASS']} pass, {counts['FAIL']} fail, {counts['FILE']} cannot be read, {len(entries)} in all",
         ]
     )

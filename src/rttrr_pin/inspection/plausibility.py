@@ -152,11 +152,13 @@ def implausible(subject: Subject) -> Iterator[Observation]:
     for case in cases(subject).values():
         if case.possible and not case.drawn and (case.wide or case.narrow):
             density = ellipsoid_density(case.mass, case.moments)
+            within = (
+                f" in a robot whose joints and centres of mass lie within {case.extent:.3g} m" if case.extent else ""
+            )
             like = "" if np.isnan(density) else f"; the ellipsoid with this mass and inertia has {density:.2g} kg/m^3"
             yield Observation(
                 case.link, case.gyration, "m",
-                f"the radius of gyration is {case.gyration:.3g} m in a robot whose joints and centres of mass lie "
-                f"within {case.extent:.3g} m{like}",
+                f"the radius of gyration is {case.gyration:.3g} m{within}{like}",
                 "check the inertia's unit (kg m^2), the mass's (kg), and for placeholders",
             )  # fmt: skip
 

@@ -132,7 +132,7 @@ def inspect_document(
     ignore: Iterable[str] = (),
 ) -> Inspection:
     """The same of a file that was read, without the robot that it describes."""
-    checks = _chosen(tuple(select), tuple(ignore))
+    checks = chosen(tuple(select), tuple(ignore))
     subject = Subject(document, document.folder if folder is None else Path(folder))
     with np.errstate(all="ignore"):  # 1e308 is a number; what overflows is shown as inf, and no verdict rests on it
         findings = _once(_explained(subject, finding) for check in checks for finding in check.findings(subject))
@@ -200,7 +200,7 @@ def _once(findings: Iterable[Finding]) -> list[Finding]:
     return [finding for finding in everything if not covered(finding)]
 
 
-def _chosen(select: tuple[str, ...], ignore: tuple[str, ...]) -> list[Check]:
+def chosen(select: tuple[str, ...], ignore: tuple[str, ...]) -> list[Check]:
     """The checks whose ids begin with one of the prefixes `select`, if there are any, and with none of `ignore`."""
     for prefix in (*select, *ignore):
         if not prefix or not any(check.id.startswith(prefix) for check in CHECKS):
