@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import os
+import stat
 import subprocess
 import sys
 import tempfile
@@ -281,7 +282,7 @@ def test_a_read_only_folder_with_the_entry_in_it_is_no_warning(folder: Path, mon
     def refuse(*arguments: object, **names: object) -> None:
         raise PermissionError(13, "Permission denied")
 
-    for name in ("utime", "mkdir", "unlink", "replace", "open"):
+    for name in ("utime", "mkdir", "unlink", "replace"):
         monkeypatch.setattr(os, name, refuse)
     assert not warned(lambda: robot().compile("tau")(*STATE))
 
@@ -328,44 +329,177 @@ def old(folder: Path, name: str, hours: float) -> Path:
     return path
 
 
+NAMES = {letter: cache.key(letter) for letter in "abcdef"}
+"""Names as entries have them, by a letter each."""
+
+
+def letters(folder: Path) -> set[str]:
+    """Of the entries in the folder."""
+    kept = {path.stem for path in entries(folder)}
+    return {letter for letter, name in NAMES.items() if name in kept}
+
+
 def test_entries_not_used_for_longest_are_dropped(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cache, "MOST_BYTES", 5000)
-    for hours, name in enumerate("edcba"):
-        cache.write(name, bytes(1200))
-        old(folder, name + cache.SUFFIX, 5 - hours)
-    kept = {path.stem for path in entries(folder)}
-    assert kept == set("dcba")  # four of them are 4928 bytes
-    assert cache.read("d") is not None  # the oldest, used again
-    cache.write("f", bytes(1200))
-    assert {path.stem for path in entries(folder)} == set("dbaf")
+    for hours, letter in enumerate("edcba"):
+        cache.write(NAMES[letter], bytes(1200))
+        old(folder, NAMES[letter] + cache.SUFFIX, 5 - hours)
+    assert letters(folder) == set("dcba")  # four of them are 4928 bytes
+    assert cache.read(NAMES["d"]) is not None  # the oldest, used again
+    cache.write(NAMES["f"], bytes(1200))
+    assert letters(folder) == set("dbaf")
 
 
 def test_the_newest_entry_stays_whatever_its_age_says(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(cache, "MOST_BYTES", 3000)
-    for name in "abcdef":
+    for name in NAMES.values():
         cache.write(name, bytes(1000))
         assert cache.read(name) is not None
 
 
 def test_remains_of_killed_processes_are_dropped_and_those_at_work_left(folder: Path) -> None:
-    cache.write("a", b"code")
-    for name in ("dead.partial", "alive.partial"):
+    cache.write(NAMES["a"], b"code")
+    dead, alive = (f"{NAMES['c']}{end}.partial" for end in ("abcd_123", "0123abc_"))
+    for name in (dead, alive):
         (folder / name).write_bytes(b"half")
-    old(folder, "dead.partial", 2)
-    cache.write("b", b"code")
-    assert {path.name for path in folder.iterdir()} == {"alive.partial", f"a{cache.SUFFIX}", f"b{cache.SUFFIX}"}
+    old(folder, dead, 2)
+    cache.write(NAMES["b"], b"code")
+    assert {path.name for path in folder.iterdir()} == {alive, *(NAMES[x] + cache.SUFFIX for x in "ab")}
+
+
+FOREIGN = (
+    "thesis.tex",
+    "corn.kernel",
+    "download.partial",
+    f"{'g' * 40}.kernel",
+    f"{'a' * 39}.kernel",
+    "vmlinuz.kernel",
+)
 
 
 def test_files_of_others_are_left_alone(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """They do not count either: a folder that holds much else still keeps programs."""
-    folder.mkdir(parents=True)
-    (folder / "thesis.tex").write_bytes(bytes(9000))
-    (folder / "sub").mkdir()
+    """Whatever they are called. They do not count either: a folder that holds much else still keeps programs."""
+    folder.mkdir(parents=True, mode=0o700)
+    for name in FOREIGN:
+        (folder / name).write_bytes(bytes(9000))
+        old(folder, name, 100)
+    (folder / f"{'b' * 40}.kernel").mkdir()
     monkeypatch.setattr(cache, "MOST_BYTES", 3000)
-    cache.write("a", bytes(500))
-    old(folder, f"a{cache.SUFFIX}", 1)
-    cache.write("b", bytes(500))
-    assert {path.name for path in folder.iterdir()} == {"thesis.tex", "sub", f"a{cache.SUFFIX}", f"b{cache.SUFFIX}"}
+    cache.write(NAMES["a"], bytes(500))
+    old(folder, NAMES["a"] + cache.SUFFIX, 1)
+    cache.write(NAMES["b"], bytes(500))
+    own = {NAMES[letter] + cache.SUFFIX for letter in "ab"}
+    assert {path.name for path in folder.iterdir()} == {*own, *FOREIGN, f"{'b' * 40}.kernel"}
+
+
+# Whose it is
+
+
+def planted(folder: Path) -> Path:
+    """A whole and sound entry, in the place of the one of `robot()`, with the code of another robot."""
+    robot().compile("tau")(*STATE)
+    (entry,) = entries(folder)
+    robot(mass=7.0).compile("tau")(*STATE)
+    (other,) = (path for path in entries(folder) if path != entry)
+    code = other.read_bytes()[cache.DIGEST :]
+    entry.write_bytes(cache._digest(entry.stem, code) + code)
+    return entry
+
+
+SOMEBODY = 54321
+
+
+def of_somebody(path: Path) -> Callable[[os.stat_result], os.stat_result]:
+    """As if another user owned a path; to change owners takes root."""
+    number = path.stat().st_ino
+
+    def seen(status: os.stat_result) -> os.stat_result:
+        if status.st_ino != number:
+            return status
+        return os.stat_result([*status[:4], SOMEBODY, *status[5:10]])
+
+    return seen
+
+
+@pytest.fixture
+def disowned(monkeypatch: pytest.MonkeyPatch) -> Callable[[Path], None]:
+    def disown(path: Path) -> None:
+        seen, stat, fstat = of_somebody(path), os.stat, os.fstat
+        monkeypatch.setattr(os, "stat", lambda *given, **named: seen(stat(*given, **named)))
+        monkeypatch.setattr(os, "fstat", lambda handle: seen(fstat(handle)))
+
+    return disown
+
+
+@pytest.mark.parametrize("what", ["folder", "entry"])
+@pytest.mark.parametrize("fault", ["another user", "group writes", "all write"])
+def test_what_another_user_may_have_written_is_not_run(
+    folder: Path, compiled: list[int], disowned: Callable[[Path], None], what: str, fault: str
+) -> None:
+    expected = robot().compile("tau")(*STATE)
+    entry = planted(folder)
+    np.testing.assert_array_equal(robot().compile("tau")(*STATE), robot(mass=7.0).compile("tau")(*STATE))  # it runs
+    place = folder if what == "folder" else entry
+    if fault == "another user":
+        disowned(place)
+    else:
+        place.chmod(0o770 if fault == "group writes" else 0o707)
+    compiled.clear()
+    messages = warned(lambda: np.testing.assert_array_equal(robot().compile("tau")(*STATE), expected))
+    assert len(messages) == len(compiled) == 1
+    assert ("belongs to another user" if fault == "another user" else "other users may write it") in messages[0]
+    assert not warned(lambda: robot(mass=9.0).compile("tau")(*STATE))  # once is enough
+
+
+def test_a_folder_in_doubt_is_not_written_either(folder: Path) -> None:
+    folder.mkdir(parents=True)
+    folder.chmod(0o777)
+    assert len(warned(compile_two)) == 1
+    assert not list(folder.iterdir())
+
+
+def test_folder_and_entries_are_for_the_user_alone(folder: Path) -> None:
+    before = os.umask(0)
+    try:
+        robot().compile("tau")(*STATE)
+    finally:
+        os.umask(before)
+    (entry,) = entries(folder)
+    assert [stat.S_IMODE(path.stat().st_mode) for path in (folder, entry)] == [0o700, 0o600]
+
+
+@pytest.mark.parametrize("kind", ["pipe", "link", "pipe for a folder"])
+def test_what_is_no_file_is_neither_waited_for_nor_followed(folder: Path, kind: str) -> None:
+    expected = robot().compile("tau")(*STATE)
+    (entry,) = entries(folder)
+    if kind == "pipe for a folder":
+        for path in (entry, folder):
+            path.unlink() if path == entry else path.rmdir()
+        os.mkfifo(folder)
+        assert len(warned(lambda: np.testing.assert_array_equal(robot().compile("tau")(*STATE), expected))) == 1
+        return
+    elsewhere = folder.parent / "elsewhere"
+    entry.replace(elsewhere)
+    os.mkfifo(entry) if kind == "pipe" else entry.symlink_to(elsewhere)
+    np.testing.assert_array_equal(robot().compile("tau")(*STATE), expected)
+    assert entry.is_file() and not entry.is_symlink() and elsewhere.exists()
+
+
+def test_a_home_and_a_relative_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
+    monkeypatch.chdir(tmp_path)
+    cache._place.cache_clear()
+    for named, place in (("~/kernels", tmp_path / "home/kernels"), ("beside", tmp_path / "beside")):
+        monkeypatch.setenv(cache.VARIABLE, named)
+        robot().compile("tau")(*STATE)
+        assert len(entries(place)) == 1
+    (tmp_path / "home").mkdir(exist_ok=True)
+    monkeypatch.chdir(tmp_path / "home")  # the folder does not move with the process
+    assert cache.folder() == tmp_path / "beside"
+    cache._place.cache_clear()
+    monkeypatch.setenv(cache.VARIABLE, "~nobody_of_that_name/kernels")
+    assert len(warned(compile_two)) == 1
+    assert {path.name for path in tmp_path.iterdir()} == {"home", "beside"}
 
 
 # Names of entries

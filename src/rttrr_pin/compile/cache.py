@@ -4,13 +4,19 @@ An entry is one file, named after everything that its bytes depend on: the robot
 versions of this package and of the compiler, the processor. It is written beside its place and then moved there, so
 that processes that start at the same time find it whole or not at all, and it carries a digest of itself, so that a
 damaged one is dropped. A folder that cannot be written costs a warning and nothing else.
+
+An entry is machine code that will run as the user. So the folder and the entry must belong to the user or to root, and
+nobody else may write them: a digest protects from accidents, not from a neighbour on the machine.
 """
 
 from __future__ import annotations
 
 import contextlib
+import errno
 import hashlib
 import os
+import re
+import stat
 import tempfile
 import warnings
 from functools import cache
@@ -28,15 +34,34 @@ MOST_BYTES = 256 * 2**20
 
 SUFFIX = ".kernel"
 
+OWN = re.compile(r"[0-9a-f]{40}(\.kernel|[0-9a-z_]{8}\.partial)")
+"""The names of entries, and of those that are being written; whatever else lies in the folder is somebody else's."""
+
 DIGEST = 32
+
+BY_OTHERS = stat.S_IWGRP | stat.S_IWOTH
+
+
+class DoubtError(OSError):
+    """A folder or an entry that another user may have written: code in it is not run."""
 
 
 def folder() -> Path | None:
-    """Where entries lie; None where the user wants none."""
+    """Where entries lie; None where the user wants none, or there is no such place."""
     named = os.environ.get(VARIABLE)
     if named is None:
-        return Path(platformdirs.user_cache_dir("rttrr-pin", appauthor=False)) / "kernels"
-    return Path(named) if named else None
+        named = str(Path(platformdirs.user_cache_dir("rttrr-pin", appauthor=False)) / "kernels")
+    return _place(named) if named else None
+
+
+@cache
+def _place(named: str) -> Path | None:
+    """The folder of a name, for as long as the process runs: a relative one is where it was when first asked for."""
+    try:
+        return Path(named).expanduser().absolute()
+    except (OSError, RuntimeError) as error:
+        _warn_of_no_cache(named, str(error))
+        return None
 
 
 def key(*parts: bytes | str) -> str:
@@ -59,13 +84,23 @@ def sources() -> bytes:
 
 
 def read(name: str) -> bytes | None:
-    """The bytes of an entry, or None; a damaged one is removed."""
+    """The bytes of an entry, or None. A damaged one is removed; one that others may have written is not touched."""
     where = folder()
     if where is None:
         return None
     path = where / (name + SUFFIX)
     try:
-        data = path.read_bytes()
+        _check_owner(where.stat())
+    except DoubtError as doubt:
+        _warn_of_no_cache(str(where), str(doubt.strerror))
+        return None
+    except OSError:
+        return None
+    try:
+        data = _contents(path)
+    except DoubtError as doubt:
+        _warn(f"a compiled kernel in {where} is not run ({doubt.strerror}): it is compiled anew")
+        return None
     except OSError:
         return None
     if _digest(name, data[DIGEST:]) != data[:DIGEST]:
@@ -75,6 +110,32 @@ def read(name: str) -> bytes | None:
     with contextlib.suppress(OSError):
         os.utime(path)  # used now
     return data[DIGEST:]
+
+
+def _contents(path: Path) -> bytes:
+    """The bytes of a file that is ours; a pipe in its place is not waited for, and a link not followed."""
+    handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC)
+    try:
+        status = os.fstat(handle)
+        _check_owner(status)
+        if not stat.S_ISREG(status.st_mode):
+            return b""
+        with os.fdopen(handle, "rb", closefd=False) as file:
+            return file.read()
+    finally:
+        os.close(handle)
+
+
+def _check_owner(status: os.stat_result) -> None:
+    """Refuse what another user but root owns or may write.
+
+    Raises:
+        DoubtError: it is so.
+    """
+    if status.st_uid not in (os.geteuid(), 0):
+        raise DoubtError(errno.EPERM, "it belongs to another user")
+    if status.st_mode & BY_OTHERS:
+        raise DoubtError(errno.EPERM, "other users may write it")
 
 
 def _digest(name: str, data: bytes) -> bytes:
@@ -89,37 +150,42 @@ def write(name: str, data: bytes) -> None:
         return
     partial = None
     try:
-        where.mkdir(parents=True, exist_ok=True)
+        where.mkdir(mode=0o700, parents=True, exist_ok=True)
+        _check_owner(where.stat())
         handle, partial = tempfile.mkstemp(prefix=name, suffix=".partial", dir=where)
         with os.fdopen(handle, "wb") as file:
             file.write(_digest(name, data) + data)
         Path(partial).replace(where / (name + SUFFIX))
         _drop_the_oldest(where)
     except OSError as error:
+        _warn_of_no_cache(str(where), error.strerror or type(error).__name__)
+    finally:
         if partial is not None:
-            with contextlib.suppress(OSError):
+            with contextlib.suppress(OSError):  # it is in its place, where nothing went wrong
                 Path(partial).unlink()
-        _warn(str(where), error.strerror or type(error).__name__)
+
+
+def _warn_of_no_cache(where: str, error: str) -> None:
+    _warn(
+        f"compiled kernels cannot be kept in {where} ({error}): every process compiles its own; "
+        f"set {VARIABLE} to a folder that you alone can write, or to nothing for no cache"
+    )
 
 
 @cache
-def _warn(where: str, error: str) -> None:
-    """Once for a folder and a reason."""
-    warnings.warn(
-        f"compiled kernels cannot be kept in {where} ({error}): every process compiles its own; "
-        f"set {VARIABLE} to a folder that can be written, or to nothing for no cache",
-        CacheWarning,
-        stacklevel=2,
-    )
+def _warn(message: str) -> None:
+    """Once."""
+    warnings.warn(message, CacheWarning, stacklevel=2)
 
 
 def _drop_the_oldest(where: Path) -> None:
     """Keep the entries used last, up to `MOST_BYTES`; and no remains of processes that were killed."""
     entries = []
-    for path in (*where.glob(f"*{SUFFIX}"), *where.glob("*.partial")):
+    for path in where.iterdir():
         with contextlib.suppress(OSError):  # another process may have dropped it
-            status = path.stat()
-            entries.append((status.st_mtime, status.st_size, path))
+            status = path.lstat()
+            if OWN.fullmatch(path.name) and stat.S_ISREG(status.st_mode):
+                entries.append((status.st_mtime, status.st_size, path))
     newest = max((time for time, _, _ in entries), default=0.0)
     total = 0
     for time, size, path in sorted(entries, reverse=True, key=lambda entry: entry[0]):
