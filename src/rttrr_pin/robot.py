@@ -160,6 +160,11 @@ class Robot:
             UnknownNameError: there is no such output, or no such emitter.
             InputError: no output, or one twice; or the emitter cannot be imported.
         """
+        names = [outputs] if isinstance(outputs, str) else outputs
+        if not isinstance(names, list | tuple) or not all(isinstance(name, str) for name in names):
+            raise InputError(f"outputs is {outputs!r}: pass a name, or several in a tuple, such as ('tau', 'n')")
+        if emitter is not None and not isinstance(emitter, str):
+            raise InputError(f"emitter is {emitter!r}: pass its name, such as 'llvm', or None")
         return self._kernel(outputs if isinstance(outputs, str) else tuple(outputs), emitter)
 
     def _kernel(self, outputs: str | tuple[str, ...], emitter: str | None = None) -> Kernel[Any]:
@@ -321,6 +326,8 @@ class Robot:
             NumberError: a number is not finite, or is negative.
         """
         moving = [joint.name for joint in self.model.joints if joint.nv]
+        if not isinstance(effects, Mapping):
+            raise InputError(f"effects is a {type(effects).__name__}: pass a dict from joint name to JointEffects(...)")
         for name, own in effects.items():
             if name not in moving:
                 raise UnknownNameError("moving joint", name, moving)

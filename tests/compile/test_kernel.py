@@ -311,6 +311,19 @@ def test_batches_of_three_axes_in_any_order_of_memory(kernel: Kernel, axes: tupl
     np.testing.assert_array_equal(kernel(*other), kernel(*state))
 
 
+def test_a_batch_whose_states_lie_in_no_rows_is_copied_in_parts(kernel: Kernel) -> None:
+    """Inputs and outputs: the last axis of memory is the first of the batch."""
+    out = np.empty((10, 5, 20_000)).transpose(2, 0, 1)
+    given = [x.transpose(2, 0, 1) for x in np.random.default_rng(0).uniform(-1, 1, (3, 10, 5, 20_000))]
+    tracemalloc.start()
+    try:
+        kernel(*given, out=out, threads=1)
+        assert tracemalloc.get_traced_memory()[1] < out.nbytes / 2
+    finally:
+        tracemalloc.stop()
+    np.testing.assert_array_equal(out, kernel(*(np.ascontiguousarray(x) for x in given)))
+
+
 @pytest.mark.parametrize("layout", ["as-is", "fortran", "every-other-column", "reversed-both"])
 @pytest.mark.parametrize("dtype", [np.float32, np.float16])
 def test_short_floats_are_widened_first(kernel: Kernel, dtype: Any, layout: str) -> None:

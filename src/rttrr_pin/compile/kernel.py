@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import threading
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
 from functools import cached_property
 from math import prod
@@ -75,7 +74,6 @@ class Kernel(Generic[Result]):
         self._emitter_name, self._straight_line = emitter_name, straight_line
         self._emitter: Emitter = emitter(emitter_name)
         self._variants: dict[tuple[PayloadSlot, ...], Variant] = {}
-        self._lock = threading.Lock()
         self._inputs = "".join(field.name for field in inputs_read(model, self.outputs))
         self._floats = bool(model.quaternions)
         self._widths = {"q": model.nq, "v": model.nv, "a": model.nv}
@@ -198,7 +196,7 @@ class Kernel(Generic[Result]):
         inputs = [as_rows(x, batch, rows) for x in (*arrays.values(), *numbers.values())]
         targets, results = self._targets(variant, out, batch, rows, inputs)
         count = threads.count(wanted_threads, rows * (variant.width_in + variant.width_out))
-        if rows and threads.run(variant.executable.bind(inputs, targets), rows, count):
+        if rows and threads.run(_task(variant, inputs, targets, batch or (1,)), rows, count):
             self._explain(arrays, numbers, variant, (inputs, targets))
         for result, target in zip(results, targets, strict=True):
             if not np.may_share_memory(result, target):
@@ -232,7 +230,7 @@ class Kernel(Generic[Result]):
     def _variant(self, slots: tuple[PayloadSlot, ...]) -> Variant:
         """The program for payloads there: from this process, from disk, or compiled now."""
         if slots not in self._variants:
-            with self._lock:  # one thread compiles, the others wait and find it
+            with threads.COMPILING:  # one thread compiles, the others wait and find it
                 if slots not in self._variants:
                     self._variants[slots] = self._compiled(slots)
                     if not slots and not self._floats:
@@ -267,6 +265,8 @@ class Kernel(Generic[Result]):
                 check_out(field.name, own, shape)
             elsewhere = own is not None and any(np.may_share_memory(own, x) for x in inputs)
             target = None if own is None or elsewhere else rows_in_place(own, rows, field.width)
+            if own is not None and target is None and not elsewhere:
+                target = own if batch else own[None]  # in parts, see `_task`
             if target is None:
                 target = np.empty((rows, field.width))
             for other, result in zip(self.outputs, results, strict=False):  # those before it
@@ -290,11 +290,36 @@ class Kernel(Generic[Result]):
             finite(name, x, self._labels(name))
         for name, x in numbers.items():
             finite(name, x)
-        inputs, targets = rows
-        for field, target in zip(variant.outputs, targets, strict=True):
-            bad = np.argwhere(~np.isfinite(target))
+        inputs = [x.reshape(-1, x.shape[-1]) for x in rows[0]]
+        for field, target in zip(variant.outputs, rows[1], strict=True):
+            bad = np.argwhere(~np.isfinite(target.reshape(-1, field.width)))
             if len(bad):
                 raise overflow(field.name, int(bad[0][0]), dict(zip(self._inputs, inputs, strict=False)))
+
+
+def _task(
+    variant: Variant, inputs: Sequence[NDArray[Any]], targets: Sequence[Array], batch: tuple[int, ...]
+) -> Callable[[int, int], bool]:
+    """The task of a batch; where the states of an array lie in no even rows, each part of it is copied in its turn."""
+    rows = prod(batch)
+    uneven = [x for x, field in zip(inputs, variant.inputs, strict=True) if x.shape != (rows, field.width)]
+    uneven += [y for y, field in zip(targets, variant.outputs, strict=True) if y.shape != (rows, field.width)]
+    if not uneven:
+        return variant.executable.bind(inputs, targets)
+
+    def part(start: int, stop: int) -> bool:
+        states = np.unravel_index(np.arange(start, stop), batch)
+        given = [x[start:stop] if x.ndim == 2 else x[states] for x in inputs]
+        results = [np.empty((stop - start, field.width)) for field in variant.outputs]
+        failed = variant.executable.bind(given, results)(0, stop - start)
+        for target, result, field in zip(targets, results, variant.outputs, strict=True):
+            if target.shape == (rows, field.width):
+                target[start:stop] = result
+            else:
+                target[states] = result.reshape(-1, *field.shape)
+        return failed
+
+    return part
 
 
 def fingerprint(model: Model) -> bytes:

@@ -6,11 +6,18 @@ Which thread computes a state has no influence on its bits, so parts are handed 
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from functools import lru_cache
 
 from rttrr_pin.core.inputs import whole_number
+
+COMPILING = threading.RLock()
+"""Held while a program is compiled, loaded or given up. A fork waits for it: a child that was forked in the middle
+would inherit the compiler's locks, and nobody who lets go of them."""
+
+os.register_at_fork(before=COMPILING.acquire, after_in_parent=COMPILING.release, after_in_child=COMPILING.release)
 
 PART = 8192
 """States in a part: a millisecond or so, after which Ctrl-C is heard."""

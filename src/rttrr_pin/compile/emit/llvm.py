@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import sys
 from collections.abc import Sequence
 from functools import cache
 from importlib import import_module
@@ -23,6 +24,7 @@ from rttrr_pin.compile.emit.llvm_body import body
 from rttrr_pin.compile.emit.llvm_calls import calls
 from rttrr_pin.compile.emit.llvm_vectors import Layout
 from rttrr_pin.compile.program import Field, Program
+from rttrr_pin.compile.threads import COMPILING
 
 BLOCK = 64
 """States in a block."""
@@ -103,12 +105,14 @@ class LlvmEmitter:
             text, between = calls(program, layout), program.between
         else:
             text, between = body(program, layout)
-        module = llvm.parse_assembly(driver(program, layout, between))
+        # A context of its own, which goes with the module: the global one keeps every constant it has ever seen.
+        context = llvm.create_context()
+        module = llvm.parse_assembly(driver(program, layout, between), context)
         options = llvm.create_pipeline_tuning_options(speed_level=OPTIMISATION)
         options.loop_vectorization = options.slp_vectorization = options.loop_unrolling = False
         builder = llvm.create_pass_builder(self._machine(), options)
         builder.getModulePassManager().run(module, builder)
-        module.link_in(llvm.parse_assembly(text))  # straight lines: there is nothing to be found in them
+        module.link_in(llvm.parse_assembly(text, context))  # straight lines: there is nothing to be found in them
         module.verify()
         return module
 
@@ -182,6 +186,11 @@ class LlvmExecutable:
         kind = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64)
         self._run = kind(engine.get_function_address("run"))
         self.one = python_function(engine.get_function_address("one"))
+
+    def __del__(self) -> None:
+        if not sys.is_finalizing():
+            with COMPILING:
+                self._engine.close()
 
     def bind(self, inputs: Sequence[Array], outputs: Sequence[NDArray[np.float64]]) -> Task:
         """See `task`."""
