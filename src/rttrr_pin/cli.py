@@ -1,10 +1,11 @@
 """The command line: a table of commands; each is loaded when it is called.
 
-Exit codes: 0 agree, 1 disagree, 2 unusable input, 130 interrupted.
+Exit codes: 0 agree, 1 disagree, 2 unusable input, 130 interrupted, 143 terminated.
 """
 
 from __future__ import annotations
 
+import signal
 import sys
 import warnings
 from collections.abc import Sequence
@@ -13,9 +14,9 @@ from importlib import import_module
 
 import click
 
-from rttrr_pin.errors import LoadWarning, ModelMismatchError, RttrrError
-from rttrr_pin.reporting.files import written_so_far
-from rttrr_pin.reporting.output import AGREE, DISAGREE, INTERRUPTED, UNUSABLE, discard_stdout, open_streams, shown
+from rttrr_pin.errors import CacheWarning, LoadWarning, ModelMismatchError, RttrrError
+from rttrr_pin.reporting import interrupts
+from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, discard_stdout, open_streams, shown
 
 COMMANDS = {
     "validate": "rttrr_pin.validation.command:validate",
@@ -73,31 +74,44 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """
     open_streams()
     words = sys.argv[1:] if arguments is None else list(arguments)
+    undo = interrupts.install()
+    code = UNUSABLE
+    try:
+        code = _guarded(words)
+        ended, sentence = interrupts.ending()
+    except KeyboardInterrupt:
+        ended, sentence = interrupts.ending(signal.SIGINT)
+    if ended:
+        code = ended
+        _say(sentence)
+    undo()
+    return code
+
+
+def _guarded(words: list[str]) -> int:
+    """The exit code; what went wrong is said in a sentence."""
     try:
         with warnings.catch_warnings():
             quiet = not {"-q", "--quiet"}.isdisjoint(words)
-            warnings.simplefilter("ignore" if quiet else "always", LoadWarning)  # no error either, whatever -W says
+            for own in (LoadWarning, CacheWarning):  # no error either, whatever -W says
+                warnings.simplefilter("ignore" if quiet else "always", own)
             warnings.showwarning = _warn
-            code = _run(words)
+            return _run(words)
     except ModelMismatchError as error:
         _say(f"DISAGREE: {error}")
-        code = DISAGREE
+        return DISAGREE
     except RttrrError as error:
         _say(f"error: {error}")
-        code = UNUSABLE
-    except KeyboardInterrupt:
-        code = INTERRUPTED
+    except Warning as warning:
+        _say(f"error: {warning} ({type(warning).__name__}; -W or PYTHONWARNINGS makes it an error)")
     except BrokenPipeError:  # before a verdict, as in --help
         discard_stdout()
-        code = AGREE
+        return AGREE
     except OSError as error:  # a folder that may not be read; without a name, a full disk behind stdout
         if error.filename is None:
             discard_stdout()
         _say(f"error: {error.filename or 'standard output'}: {error.strerror}")
-        code = UNUSABLE
-    if code == INTERRUPTED:
-        _say(f"interrupted: {written_so_far()}")
-    return code
+    return UNUSABLE
 
 
 def _run(words: list[str]) -> int:

@@ -101,7 +101,6 @@ def test_an_interruption_says_which_files_were_written(
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(files, "_written", [])
     (tmp_path / "a.toml").write_text(TWO_LINK)
     words = ["audit", str(tmp_path / "a.toml"), "--json", str(tmp_path / "a.json"), "--html", str(tmp_path / "a.html")]
     with monkeypatch.context() as patch:

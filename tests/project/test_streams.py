@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import json
 import os
 import signal
 import subprocess
@@ -12,11 +14,13 @@ from pathlib import Path
 import pytest
 
 from rttrr_pin.cli import main
+from support.serial_chains import EXAMPLES
 
 READY = """
 import signal, sys
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a test run in the background hands down an ignored SIGINT
 from rttrr_pin.cli import main
+from support.serial_chains import EXAMPLES
 main(["validate", "--states", "5", "--quiet"])  # imports everything: some libraries lose a Ctrl-C in that time
 print("ready", flush=True)
 sys.exit(main(sys.argv[1:]))
@@ -54,6 +58,86 @@ def test_streams_that_take_nothing(command: str, code: int, message: str) -> Non
     done = subprocess.run(words, capture_output=True, text=True, timeout=600, check=False)
     assert done.returncode == code
     assert message in done.stderr and "Traceback" not in done.stderr and "Exception ignored" not in done.stderr
+
+
+COMMANDS: dict[str, list[str]] = {
+    "validate": ["validate", "{robot}", "--states", "20", "--full"],
+    "validate a folder": ["validate", "{folder}", "--states", "20"],
+    "state": ["state", "{robot}"],
+    "search": ["search", "{robot}", "--evaluations", "600"],
+    "laws": ["laws", "{robot}", "--states", "20"],
+    "derive": ["derive", "{robot}"],
+    "inspect": ["inspect", "{robot}"],
+    "audit": ["audit"],
+    "new": ["new", "RT", "--name", "b\u00e4r"],
+}
+
+
+def words_of(command: str, tmp_path: Path) -> list[str]:
+    """The words for a robot whose name, links and joints have letters that ASCII and Latin-1 lack."""
+    text = EXAMPLES["any-axes"].replace('"chain_1"', '"Pfl\u00fcger \u0141"')
+    for tag in ("link", "joint"):
+        text = text.replace(f'"{tag}_1"', f'"{tag}_\u00e4\u4e09"')
+    folder = tmp_path / "robots"
+    folder.mkdir(exist_ok=True)
+    for name in ("\u00fc", "b"):
+        (folder / f"{name}.urdf").write_text(text, encoding="utf-8")
+    return [word.format(robot=folder / "\u00fc.urdf", folder=folder) for word in COMMANDS[command]]
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("encoding", ["ascii", "latin-1"])
+def test_a_terminal_that_lacks_letters_gets_them_escaped(
+    command: str, encoding: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    words = words_of(command, tmp_path)
+    codes = []
+    for own in (encoding, "utf-8"):
+        shown = io.BytesIO()
+        monkeypatch.setattr(sys, "stdout", io.TextIOWrapper(shown, encoding=own))
+        codes.append(main(words))
+        assert shown.getvalue().decode(own)
+    assert codes[0] == codes[1] < 2
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_full_disk_behind_the_output_is_an_error(
+    command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with Path("/dev/full").open("w", encoding="utf-8") as full, monkeypatch.context() as patch:
+        patch.setattr(sys, "stdout", full)
+        assert main(words_of(command, tmp_path)) == 2
+    assert "standard output: No space left on device" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("command", [name for name in COMMANDS if name not in ("derive", "new")])
+def test_who_prints_nothing_needs_no_output(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    words = [*words_of(command, tmp_path), "--quiet", "--json", str(tmp_path / "out.json")]
+    if "--full" in words:
+        words.remove("--full")
+    with Path("/dev/full").open("w", encoding="utf-8") as full, monkeypatch.context() as patch:
+        patch.setattr(sys, "stdout", full)
+        assert main(words) < 2
+    assert json.loads((tmp_path / "out.json").read_text(encoding="utf-8"))
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_names_of_three_hundred_letters_are_told_to_be_too_long(
+    command: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    name = {"new": ["-o", "n" * 300], "audit": ["n" * 300]}.get(command, [])
+    words = [word.format(robot="n" * 300, folder="n" * 300) for word in COMMANDS[command]]
+    assert main([*words, *name]) == 2
+    error = capsys.readouterr().err
+    assert "File name too long" in error and len(error) < 500
+
+
+@pytest.mark.parametrize("command", ["inspect", "state", "audit"])
+def test_warnings_of_other_libraries_are_no_tracebacks(command: str, tmp_path: Path) -> None:
+    words = [sys.executable, "-W", "error", "-m", "rttrr_pin", *words_of(command, tmp_path)]
+    done = subprocess.run(words, capture_output=True, text=True, timeout=600, check=False)
+    assert "Traceback" not in done.stderr
+    assert done.returncode in (0, 1) or (done.returncode == 2 and "-W or PYTHONWARNINGS" in done.stderr)
 
 
 @pytest.mark.parametrize("words", [[], ["--json", "-"]], ids=["table", "json"])

@@ -44,7 +44,7 @@ def no_work(monkeypatch: pytest.MonkeyPatch) -> None:
     def work(*_: object, **__: object) -> None:
         pytest.fail("the work began before the outputs were checked")
 
-    for name in ("validation.options.load", "inspection.command.load", "derivation.command.load"):
+    for name in ("validation.options.load", "inspection.command.find", "derivation.command.load"):
         monkeypatch.setattr(f"rttrr_pin.{name}", work)
     monkeypatch.setattr("rttrr_pin.auditing.command.read_publication", work)
 

@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import json
+import multiprocessing
+import os
 from pathlib import Path
 
 import pytest
 
+import rttrr_pin
 from rttrr_pin.cli import main
-from rttrr_pin.errors import InputError, UnknownNameError
+from rttrr_pin.errors import InputError, UnknownNameError, UrdfError
+from rttrr_pin.urdf.sources import robots_in
 from rttrr_pin.validation import Task, validate_many
 from support.serial_chains import EXAMPLES
 
@@ -45,6 +49,61 @@ def test_the_outcome_does_not_depend_on_the_workers(folder: Path) -> None:
         for workers in (1, 2)
     ]
     assert outcomes[0] == outcomes[1]
+
+
+def test_a_worker_that_is_killed_costs_one_robot(folder: Path) -> None:
+    """As where memory runs out: what it was at is named, and all else goes on."""
+    (folder / "more.urdf").write_text(EXAMPLES["one-joint"])
+    sources = {path.stem: path for path in sorted(folder.glob("*.urdf"))}
+    killed: list[int] = []
+
+    def kill(done: int) -> None:
+        if done == 1:
+            for worker in multiprocessing.active_children():
+                killed.append(worker.pid or 0)
+                worker.kill()
+                worker.join()
+
+    entries = validate_many(sources, Task(n_states=2000), workers=2, progress=kill)
+    assert [(entry.name, entry.base) for entry in entries] == [
+        (name, base) for name in sources for base in ("fixed", "floating")
+    ]
+    lost = [entry for entry in entries if entry.verdict != "agree"]
+    assert len(lost) < len(killed) == 2
+    assert all("killed by signal 9: was memory short?" in entry.defect for entry in lost)
+    assert not multiprocessing.active_children()
+
+
+def test_a_folder_that_cannot_be_looked_into_is_told(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As for a user who may not; root may everything. What lies beside it is validated."""
+    (folder / "shut").mkdir()
+    scandir = os.scandir
+
+    def scan(place: str) -> object:
+        if Path(place).name == "shut":
+            raise PermissionError(13, "Permission denied", str(place))
+        return scandir(place)
+
+    monkeypatch.setattr(os, "scandir", scan)
+    assert list(robots_in(folder)) == ["any-axes.urdf", "fixed-between.urdf", "shut/"]
+    with pytest.raises(UrdfError, match="shut: cannot be read: Permission denied"):
+        rttrr_pin.load_all(folder)
+    for name in ("any-axes", "fixed-between"):
+        (folder / f"{name}.urdf").unlink()
+    with pytest.raises(UrdfError, match="holds no robot, and shut/ cannot be read"):
+        rttrr_pin.load(folder)
+    assert main(["validate", str(folder / "shut")]) == 2
+    assert "shut: cannot be read: Permission denied" in capsys.readouterr().err
+
+
+def test_a_folder_as_large_as_a_disk_is_not_searched_through(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr("rttrr_pin.urdf.sources.MOST_ENTRIES", 1)
+    assert main(["validate", str(folder)]) == 2
+    assert "holds more than 1 files and folders, of which 0 robots" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -12,20 +12,15 @@ from pathlib import Path
 from typing import Any
 
 from rttrr_pin.errors import InputError
+from rttrr_pin.reporting.interrupts import held_back, put_in_place
+
+PARTIAL = ".rttrr-pin."
+"""What the name of a file that is not whole yet begins with; short, since the target's may be as long as one may be."""
 
 
 def as_json(data: dict[str, Any]) -> str:
     """JSON text; what JSON has no number for is written as text ("inf")."""
     return json.dumps(_finite(data), indent=2, allow_nan=False) + "\n"
-
-
-_written: list[Path] = []
-"""By this process, in order."""
-
-
-def written_so_far() -> str:
-    """Which files this process has written, in words; each of them is whole."""
-    return f"{', '.join(map(str, _written))} written, nothing else" if _written else "nothing was written"
 
 
 def write_whole(path: Path, text: str) -> None:
@@ -37,21 +32,12 @@ def write_whole(path: Path, text: str) -> None:
     target = path.resolve()  # a link stays a link
     try:
         if target.exists() and not target.is_file():
-            _written.append(path)  # what is written to a pipe or a device does not come back
-            target.write_text(text, encoding="utf-8")
+            put_in_place(str(path))
+            target.write_text(text, encoding="utf-8")  # a pipe or a device is written to, not replaced
             return
-        handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.name}.")
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8") as file:
-                file.write(text)
-            umask = os.umask(0)
-            os.umask(umask)
-            Path(name).chmod(target.stat().st_mode & 0o7777 if target.exists() else 0o666 & ~umask)
-            Path(name).replace(target)
-            _written.append(path)
-        except BaseException:
-            Path(name).unlink(missing_ok=True)
-            raise
+        with held_back():
+            _replace(target, text)
+            put_in_place(str(path))
     except OSError as error:
         raise InputError(f"{path} cannot be written: {error.strerror}; choose another file") from error
 
@@ -83,6 +69,21 @@ def read_limited(path: Path, most: int) -> bytes:
     finally:
         os.close(handle)
     raise InputError(f"it has more than {most:,} bytes; give a shorter file")
+
+
+def _replace(target: Path, text: str) -> None:
+    """A file beside the target, moved there once it is whole."""
+    handle, name = tempfile.mkstemp(dir=target.parent, prefix=PARTIAL)
+    try:
+        with os.fdopen(handle, "w", encoding="utf-8", newline="") as file:
+            file.write(text)
+        umask = os.umask(0)
+        os.umask(umask)
+        Path(name).chmod(target.stat().st_mode & 0o7777 if target.exists() else 0o666 & ~umask)
+        Path(name).replace(target)
+    except BaseException:
+        Path(name).unlink(missing_ok=True)
+        raise
 
 
 def _finite(data: Any) -> Any:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import os
 import re
 import sys
@@ -16,7 +17,7 @@ from rich.segment import Segment
 
 from rttrr_pin.reporting.files import as_json, write_whole
 
-AGREE, DISAGREE, UNUSABLE, INTERRUPTED = 0, 1, 2, 130
+AGREE, DISAGREE, UNUSABLE = 0, 1, 2
 
 SHOW_PROGRESS_AFTER = 1.0
 """Seconds."""
@@ -48,10 +49,13 @@ class Output(Console):
 
 
 def open_streams() -> None:
-    """Give a process that was started with stdout or stderr closed ones that go nowhere."""
+    """Streams that take every text: a closed one goes nowhere, and one in ASCII gets a name's other letters escaped."""
     for name in ("stdout", "stderr"):
-        if getattr(sys, name) is None:
+        stream = getattr(sys, name)
+        if stream is None:
             setattr(sys, name, os.fdopen(os.open(os.devnull, os.O_WRONLY), "w", encoding="utf-8"))
+        elif isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
 
 
 def discard_stdout() -> None:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+import signal
+import threading
 import time
-from collections import Counter
+from collections import Counter, deque
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from dataclasses import asdict, dataclass
-from multiprocessing import get_context
+from contextlib import suppress
+from dataclasses import asdict, dataclass, field
+from multiprocessing import connection, get_context, parent_process, resource_tracker
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Literal, get_args
 
@@ -16,6 +19,7 @@ from rttrr_pin.core.inputs import whole_number
 from rttrr_pin.errors import ModelMismatchError, RttrrError, UnknownNameError
 from rttrr_pin.implementations import names
 from rttrr_pin.loading import load
+from rttrr_pin.reporting.interrupts import held_back
 from rttrr_pin.validation.run import validate
 from rttrr_pin.validation.sampling import SAMPLINGS
 from rttrr_pin.validation.states import Progress, check_count
@@ -25,6 +29,8 @@ Base = Literal["fixed", "floating"]
 Verdict = Literal["agree", "disagree", "unusable"]
 
 BASES: tuple[Base, ...] = get_args(Base)
+
+context = get_context("spawn")
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +43,8 @@ class Task:
         sampling: how states are drawn.
         subject: the program that is judged, by name.
         reference: the program that it is compared with, by name.
+        xacro: whether xacro files are expanded, which runs the Python in them.
+        xacro_args: values of their <xacro:arg>, by name.
     """
 
     n_states: int = 10_000
@@ -44,6 +52,8 @@ class Task:
     sampling: str = "uniform"
     subject: str = "kernel"
     reference: str = "pinocchio"
+    xacro: bool = False
+    xacro_args: Mapping[str, object] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,31 +119,105 @@ def validate_many(
     return [entries[number] for number in range(len(jobs))]
 
 
-def _run(jobs: Sequence[tuple[str, Path, Base, Task]], workers: int) -> Iterator[tuple[int, Entry]]:
-    """Outcomes as they come; an interrupt ends the workers."""
-    # A forked worker would inherit the locks of threads that are not there; a spawned one starts afresh.
-    pool = ProcessPoolExecutor(workers, mp_context=get_context("spawn"))
+Job = tuple[str, Path, Base, Task]
+
+
+def _run(jobs: Sequence[Job], workers: int) -> Iterator[tuple[int, Entry]]:
+    """Outcomes as they come. A worker that dies costs one robot; whatever ends this ends the workers."""
+    waiting = deque(enumerate(jobs))
+    pool: list[_Worker] = []
     try:
-        futures = {pool.submit(_entry, *job): number for number, job in enumerate(jobs)}
-        for future in as_completed(futures):
-            yield futures[future], future.result()
-    except BaseException:
-        for process in list(pool._processes.values()):
-            process.terminate()
-        raise
+        for _ in range(workers):
+            with held_back():
+                pool.append(_Worker())
+        while waiting or any(worker.busy for worker in pool):
+            for place, worker in enumerate(pool):
+                if not worker.busy and waiting:
+                    if not worker.process.is_alive():
+                        with held_back():
+                            pool[place] = _Worker()
+                    pool[place].give(*waiting.popleft())
+            lines = {worker.line: worker for worker in pool if worker.busy}
+            for line in connection.wait([*lines]):
+                yield lines[line].outcome()  # type: ignore[index]
     finally:
-        pool.shutdown(wait=True, cancel_futures=True)
+        with held_back():
+            for worker in pool:
+                worker.process.kill()
+            for worker in pool:
+                worker.process.join()
+
+
+class _Worker:
+    """A process that takes one job after the other; it ends with the process that started it.
+
+    It is spawned: a forked one would inherit the locks of threads that are not there.
+    """
+
+    def __init__(self) -> None:
+        self.line, theirs = context.Pipe()
+        self.process = context.Process(target=_serve, args=(theirs,), daemon=True)
+        self._job: tuple[int, Job] | None = None
+        # Ctrl-C reaches all processes of a terminal. This one answers; its workers inherit that they do not, which the
+        # tracker of multiprocessing would undo if it started only now.
+        resource_tracker.ensure_running()
+        before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+        try:
+            self.process.start()
+        finally:
+            signal.pthread_sigmask(signal.SIG_SETMASK, before)
+            theirs.close()
+
+    @property
+    def busy(self) -> bool:
+        """Whether it has a job whose outcome was not taken."""
+        return self._job is not None
+
+    def give(self, number: int, job: Job) -> None:
+        """Hand over a job; whether it still lives is seen at the outcome."""
+        self._job = number, job
+        with suppress(OSError):
+            self.line.send(job)
+
+    def outcome(self) -> tuple[int, Entry]:
+        """The number of the job and what came of it; that the worker died, if it did."""
+        assert self._job is not None
+        (number, (name, _, base, _)), self._job = self._job, None
+        try:
+            return number, self.line.recv()
+        except (EOFError, OSError):
+            self.process.join()
+            code = self.process.exitcode or 0
+            how = f"was killed by signal {-code}" if code < 0 else f"ended with exit code {code}"
+            memory = ": was memory short?" if code == -signal.SIGKILL else ""
+            return number, Entry(name, base, "unusable", defect=f"the process that ran it {how}{memory}")
+
+
+def _serve(line: Connection) -> None:
+    """A worker: jobs in, outcomes out, as long as there is somebody at the other end."""
+    threading.Thread(target=_end_with_the_parent, daemon=True).start()
+    with suppress(EOFError, OSError):
+        while True:
+            line.send(_entry(*line.recv()))
+
+
+def _end_with_the_parent() -> None:
+    """Also where that was killed, and could end nothing."""
+    parent = parent_process()
+    assert parent is not None
+    parent.join()
+    os._exit(1)
 
 
 def _entry(name: str, path: Path, base: Base, task: Task) -> Entry:
     """One robot on one base."""
     start = time.perf_counter()
     try:
-        robot = load(path, base=base)
+        robot = load(path, base=base, xacro=task.xacro, xacro_args=task.xacro_args)
         result = validate(robot, task.subject, task.reference, task.n_states, task.seed, task.sampling)
-    except RttrrError as error:
+    except (RttrrError, MemoryError) as error:
         verdict: Verdict = "disagree" if isinstance(error, ModelMismatchError) else "unusable"
-        defect = str(error).replace(str(path), path.name)
+        defect = str(error).replace(str(path), path.name) or "there is not enough memory for it"
         return Entry(name, base, verdict, defect=defect, seconds=time.perf_counter() - start)
     worst = result.worst
     return Entry(
