@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import warnings
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import Literal
 
@@ -15,7 +16,7 @@ from rttrr_pin.core.joints import FLOATING
 from rttrr_pin.core.model import STANDARD_GRAVITY, Model
 from rttrr_pin.errors import InputError, LoadWarning, ShapeError
 from rttrr_pin.robot import Robot
-from rttrr_pin.urdf.sources import AnySource, mjcf_path, robots_in
+from rttrr_pin.urdf.sources import AnySource, Reading, mjcf_path, robots_in
 
 
 def load(
@@ -23,6 +24,8 @@ def load(
     gravity: ArrayLike | None = None,
     base: Literal["fixed", "floating"] = "fixed",
     friction: bool = False,
+    xacro: bool = False,
+    xacro_args: Mapping[str, object] | None = None,
 ) -> Robot:
     """Load a robot.
 
@@ -32,9 +35,9 @@ def load(
 
     Args:
         source: the name of a bundled robot (`"rttrr"`) or of an example robot (`"example:panda"`, with the extra
-            `robots`); the path of a URDF, of a xacro file (with the extra `xacro`), of an MJCF file (with the extra
-            `mujoco`), or of a folder with a URDF or xacro file; the text of a URDF; or an object: `pinocchio.Model`,
-            `mujoco.MjModel`, `yourdfpy.URDF`.
+            `robots`); the path of a URDF, of a xacro file (see `xacro`), of an MJCF file (with the extra `mujoco`), or
+            of a folder with one such file; the text of a URDF; or an object: `pinocchio.Model`, `mujoco.MjModel`,
+            `yourdfpy.URDF`.
         gravity: the gravity field in the base frame, (3,) [m/s^2]: a free body accelerates by it. Without it that of
             the object or MJCF file, and (0, 0, -9.81) of a URDF.
         base: `"floating"` puts the root link on a floating joint (Pinocchio's `root_joint`): seven more coordinates,
@@ -42,6 +45,9 @@ def load(
             that floats already stays as it is.
         friction: whether damping and friction of the joints take part in tau. Pinocchio's `rnea` leaves them out;
             MuJoCo's `mj_inverse` has them.
+        xacro: whether a xacro file is expanded (with the extra `xacro`). That runs the Python expressions in it: only
+            for files that you trust.
+        xacro_args: values of the file's <xacro:arg>, such as `{"dof": 7}`; with some, a xacro file is expanded.
 
     Returns:
         The robot, its links and joints in Pinocchio's order for the same file, or in the object's.
@@ -62,7 +68,7 @@ def load(
         from rttrr_pin.implementations.mjcf import mjcf_source
 
         source = mjcf_source(file)
-    model = read_urdf(source)
+    model = read_urdf(source, Reading(xacro, xacro_args or {}))
     if field is not None:
         model = model.with_gravity(field)
     if base == "floating":
@@ -107,6 +113,8 @@ def load_all(
     gravity: ArrayLike | None = None,
     base: Literal["fixed", "floating"] = "fixed",
     friction: bool = False,
+    xacro: bool = False,
+    xacro_args: Mapping[str, object] | None = None,
 ) -> dict[str, Robot]:
     """Load every robot in a folder and below, its `.urdf` and `.xacro` files, each as `load` does.
 
@@ -117,4 +125,5 @@ def load_all(
         UrdfError: it is no folder, it holds no such file, or one of them cannot be used.
         ShapeError, NumberError, InputError: as in `load`.
     """
-    return {name: load(path, gravity, base, friction) for name, path in robots_in(folder).items()}
+    options = (gravity, base, friction, xacro, xacro_args)
+    return {name: load(path, *options) for name, path in robots_in(folder).items()}

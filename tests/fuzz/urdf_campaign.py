@@ -15,6 +15,7 @@ import multiprocessing
 import os
 import random
 import re
+import resource
 import sys
 import tempfile
 import time
@@ -30,6 +31,9 @@ from .seeds import SMALL, seeds
 
 SLOW = 1.0
 """Seconds of processor time that reading one file may take."""
+
+LARGE = 500.0
+"""Megabytes that it may take."""
 
 HANGS = 20.0
 """Seconds after which a worker that does not move on is ended."""
@@ -73,7 +77,7 @@ def check(text: str, folder: Path, ask_pinocchio: Any) -> dict[str, Any]:
     """What became of a case: its kind, the seconds it took, and what is wrong with that."""
     from rttrr_pin.errors import RttrrError
 
-    started, failure = time.process_time(), ""
+    before, started, failure = peak_memory(), time.process_time(), ""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -84,7 +88,7 @@ def check(text: str, folder: Path, ask_pinocchio: Any) -> dict[str, Any]:
     except Exception as error:
         model, kind, line = None, "crashed", True
         failure = f"{type(error).__name__}: {error}"
-    seconds = time.process_time() - started
+    seconds, megabytes = time.process_time() - started, peak_memory() - before
     if model is not None:
         failure = "; ".join(differences(text.encode(errors="surrogateescape"), model))
         if not failure:
@@ -92,7 +96,14 @@ def check(text: str, folder: Path, ask_pinocchio: Any) -> dict[str, Any]:
             kind += answer
     if seconds > SLOW:
         failure = failure or f"took {seconds:.2f} s"
-    return {"kind": kind, "line": line, "seconds": seconds, "failure": failure}
+    if megabytes > LARGE:
+        failure = failure or f"took {megabytes:.0f} MB"
+    return {"kind": kind, "line": line, "seconds": seconds, "megabytes": megabytes, "failure": failure}
+
+
+def peak_memory() -> float:
+    """The most that this process has taken so far [MB]."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 
 def refusal(error: Exception) -> str:
@@ -206,7 +217,7 @@ def campaign(seed: int, numbers: range, workers: int, serve: Any = serve) -> Ite
                 results = worker.results()
             except (EOFError, TimeoutError, ConnectionError) as error:
                 index, what = worker.replace(error)
-                yield index, {"kind": what, "line": True, "seconds": 0.0, "failure": what}
+                yield index, {"kind": what, "line": True, "seconds": 0.0, "megabytes": 0.0, "failure": what}
                 todo.appendleft([other for other in worker.indices if other != index])
                 worker.indices = []
                 continue
@@ -222,11 +233,12 @@ def campaign(seed: int, numbers: range, workers: int, serve: Any = serve) -> Ite
 def summary(seed: int, numbers: range, outcomes: Iterable[tuple[int, dict[str, Any]]]) -> dict[str, Any]:
     """The figures of a campaign; each failure as a line, and its text as a file."""
     texts, kinds, no_line, failures = seeds(), Counter[str](), Counter[str](), []
-    worst, total, started = (0.0, -1), 0.0, time.monotonic()
+    worst, largest, total, started = (0.0, -1), 0.0, 0.0, time.monotonic()
     for done, (index, outcome) in enumerate(outcomes, start=1):
         kinds[outcome["kind"]] += 1
         no_line[outcome["kind"]] += not outcome["line"]
         worst, total = max(worst, (outcome["seconds"], index)), total + outcome["seconds"]
+        largest = max(largest, outcome["megabytes"])
         if outcome["failure"]:
             failures.append({"case": index, "what": outcome["failure"][:500]})
             keep(seed, index, texts)
@@ -246,6 +258,7 @@ def summary(seed: int, numbers: range, outcomes: Iterable[tuple[int, dict[str, A
         "failures": sorted(failures, key=lambda failure: failure["case"]),
         "worst_seconds": round(worst[0], 4),
         "worst_case": worst[1],
+        "worst_megabytes": round(largest, 1),
         "mean_milliseconds": round(1e3 * total / max(len(numbers), 1), 3),
         "accepted_and_pinocchio": accepted,
         "refused_by_kind": refused,

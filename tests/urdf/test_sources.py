@@ -259,7 +259,7 @@ def test_every_example_robot_loads_or_says_where_it_is_wrong() -> None:
 def test_xacro_is_expanded(tmp_path: Path) -> None:
     (tmp_path / "two.urdf.xacro").write_text(XACRO.format(mass=1.5, more=""))
     for source in (tmp_path / "two.urdf.xacro", str(tmp_path / "two.urdf.xacro"), tmp_path):
-        link = rttrr_pin.load(source).model.links[0]
+        link = rttrr_pin.load(source, xacro=True).model.links[0]
         assert (link.name, link.mass, link.inertia[1, 1]) == ("arm", 1.5, 0.1 + 0.2)
 
 
@@ -269,7 +269,7 @@ def test_xacro_is_expanded(tmp_path: Path) -> None:
         ("1.5kg", "", r"two.xacro \(as xacro expands it\), line \d+: link \"arm\": .*without its unit"),
         ("1.5", "${nope}", "two.xacro: xacro cannot expand it: name 'nope' is not defined"),
         ("1.5", '<xacro:include filename="none.xacro"/>', "xacro cannot expand it: No such file"),
-        ("1.5", '<origin xyz="$(arg x) 0 0"/>', "run `xacro FILE NAME:=VALUE` yourself"),
+        ("1.5", '<origin xyz="$(arg x) 0 0"/>', "add --xacro-arg NAME:=VALUE"),
         ("1.5", "<unclosed>", "xacro cannot expand it: mismatched tag"),
         ("1.5", '<xacro:macro name="r" params=""><xacro:r/></xacro:macro><xacro:r/>', "calls itself without end"),
     ],
@@ -279,14 +279,14 @@ def test_what_xacro_cannot_do_is_a_urdf_error(mass: str, more: str, message: str
     path = tmp_path / "two.xacro"
     path.write_text(XACRO.format(mass=mass, more=more))
     with pytest.raises(UrdfError, match=message):
-        rttrr_pin.load(path)
+        rttrr_pin.load(path, xacro=True)
 
 
 def test_without_xacro_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "xacro", None)
     (tmp_path / "two.xacro").write_text(XACRO.format(mass=1.5, more=""))
     with pytest.raises(UrdfError, match=r"pip install 'rttrr-pin\[xacro\]'"):
-        rttrr_pin.load(tmp_path / "two.xacro")
+        rttrr_pin.load(tmp_path / "two.xacro", xacro=True)
 
 
 def test_xacro_that_was_not_expanded_is_refused() -> None:

@@ -14,7 +14,7 @@ from rttrr_pin.auditing import audit as run_audit
 from rttrr_pin.auditing.errata import errata
 from rttrr_pin.auditing.report import show_audit, show_equations
 from rttrr_pin.errors import InputError
-from rttrr_pin.reporting.options import check_targets, quiet, target
+from rttrr_pin.reporting.options import check_targets, flag, quiet, target
 from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json, write_text
 
 
@@ -29,6 +29,7 @@ from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progre
 @click.option(
     "--seed", type=click.IntRange(min=0), default=0, help="Of the random state at which numbers are compared."
 )
+@flag("--xacro", help="Expand a xacro file that it names as its robot, which runs the Python in that.")
 @target("--json", "the outcome as JSON")
 @target("--latex", "an errata sheet as LaTeX")
 @target("--html", "an errata sheet as one HTML page")
@@ -38,6 +39,7 @@ def audit(
     file: Path | None,
     equation: tuple[str, ...],
     seed: int,
+    xacro: bool,
     json: str | None,
     latex: str | None,
     html: str | None,
@@ -51,7 +53,7 @@ def audit(
     sheets = {"latex": latex, "html": html, "markdown": markdown}
     targets = {"--json": json} | {f"--{form}": where for form, where in sheets.items()}
     check_targets(targets, [] if file is None else [file])
-    publication = read_publication() if file is None else read_publication(file)
+    publication = read_publication() if file is None else read_publication(file, xacro)
     if equation:
         publication = _only(publication, equation)
     with progress(len(publication.equations), quiet, "equations") as advance:

@@ -41,11 +41,12 @@ MOST_EQUATIONS = 1000
 """In one file."""
 
 
-def read_publication(path: str | PathLike[str] = RTTRR) -> Publication:
+def read_publication(path: str | PathLike[str] = RTTRR, xacro: bool = False) -> Publication:
     """A file of equations, TOML or YAML, with its robot, symbols and conventions.
 
     Args:
         path: the file; without one, the paper on RTTRR.
+        xacro: whether a xacro file behind `urdf` is expanded, which runs the Python in it.
 
     Raises:
         EquationError: the file cannot be used; the message names the place and the reason.
@@ -57,7 +58,7 @@ def read_publication(path: str | PathLike[str] = RTTRR) -> Publication:
     if language not in COORDINATES:
         raise file.error(f"language is {language!r}: expected {' or '.join(COORDINATES)}")
     latex = language == "latex"
-    symbols = read_symbols(*_symbol_file(file, path), latex)
+    symbols = read_symbols(*_symbol_file(file, path), latex, xacro=xacro)
     spellings = dict(symbols.spellings)
     passive = _spell_motion(spellings, file, symbols.robot.model, language)
     equations = tuple(_equations(file, path, symbols.robot.model, language))

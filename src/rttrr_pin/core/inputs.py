@@ -139,9 +139,10 @@ def finite(name: str, array: Array, labels: Sequence[str] = ()) -> Array:
     value = float(array[index])
     joint = labels[index[-1]] if labels else None
     more = f" ({len(bad)} such values in all)" if len(bad) > 1 else ""
+    state = ", or drop that state" if labels else ""
     raise NumberError(
         f"{name}{list(index) if index else ''}{f', joint {joint!r},' if joint else ''} is {value}, "
-        f"expected a finite number{more}: look where it comes from, or drop that state",
+        f"expected a finite number{more}: look where it comes from{state}",
         name=name,
         joint=joint,
         index=index,

@@ -23,6 +23,8 @@ from rttrr_pin.reporting.options import (
     quiet,
     robot,
     target,
+    xacro,
+    xacro_arguments,
 )
 from rttrr_pin.reporting.output import AGREE, Output, write_text
 
@@ -45,6 +47,7 @@ ALMOST = "some rotations are almost right angles, which makes many small terms: 
 @gravity
 @base
 @friction
+@xacro
 @target("--latex", "a LaTeX document")
 @target("--markdown", "Markdown")
 @target("--python", "a Python module")
@@ -60,6 +63,8 @@ def derive(
     gravity: str | None,
     base: str,
     friction: bool,
+    xacro: bool,
+    xacro_arg: tuple[str, ...],
     latex: str | None,
     markdown: str | None,
     python: str | None,
@@ -73,8 +78,9 @@ def derive(
     targets = {"latex": latex, "markdown": markdown, "python": python, "c": c}
     wanted = {name: where for name, where in targets.items() if where is not None}
     check_targets({f"--{name}": where for name, where in wanted.items()}, [robot])
-    field = {} if gravity is None else {"gravity": numbers_of("--gravity", gravity, 3)}
-    model = load(robot, base=base, friction=friction, **field).model  # type: ignore[arg-type]
+    field = None if gravity is None else numbers_of("--gravity", gravity, 3)
+    arguments = xacro_arguments(xacro_arg)
+    model = load(robot, field, base, friction, xacro, arguments).model  # type: ignore[arg-type]
     link = only_leaf(model) if payload_link is None else model.link_index(payload_link)
     start = time.perf_counter()
     published = None if numbers else published_symbols(robot, model, link)

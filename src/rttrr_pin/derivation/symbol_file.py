@@ -79,7 +79,9 @@ def published_symbols(robot: str, model: Model, payload_link: int | None) -> Pub
     return symbols if symbols.robot.payload_link == payload_link else None
 
 
-def read_symbols(file: Table, path: Path, latex: bool, model: Model | None = None) -> PublishedSymbols:
+def read_symbols(
+    file: Table, path: Path, latex: bool, model: Model | None = None, xacro: bool = False
+) -> PublishedSymbols:
     """The robot of a file of symbols.
 
     Args:
@@ -87,6 +89,7 @@ def read_symbols(file: Table, path: Path, latex: bool, model: Model | None = Non
         path: of the file; its URDF is looked for beside it.
         latex: whether spellings are LaTeX.
         model: of the URDF, where it is loaded already.
+        xacro: whether a xacro file in its place is expanded, which runs the Python in it.
 
     Raises:
         EquationError: the tables do not fit each other, or the URDF.
@@ -108,7 +111,7 @@ def read_symbols(file: Table, path: Path, latex: bool, model: Model | None = Non
         if model is None:
             name = about.get("urdf", str)
             beside = path.parent / name  # a file; where there is none, the name is what `load` takes
-            model = load(str(beside) if beside.is_file() else name).model
+            model = load(str(beside) if beside.is_file() else name, xacro=xacro).model
         _check_frames(model, links)
         places = [model.link_index(link.get("name", str)) for link in links]
         slots = {_moved(slot, places): x for slot, x in slots.items()}

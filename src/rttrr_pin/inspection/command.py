@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 from pathlib import Path
 
 import click
@@ -13,12 +14,11 @@ from rttrr_pin.inspection.many import Demands, Entry, inspect_each
 from rttrr_pin.inspection.parsers import PARSERS
 from rttrr_pin.inspection.report import repair_data, repair_summary
 from rttrr_pin.inspection.run import Inspection, chosen, inspect_document, repair
-from rttrr_pin.reporting.files import write_whole
-from rttrr_pin.reporting.options import check_targets, flag, outcome, robot, target
+from rttrr_pin.reporting.options import check_targets, flag, outcome, robot, target, xacro, xacro_arguments
 from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json, write_text
 from rttrr_pin.urdf.parser import read_document
 from rttrr_pin.urdf.reader import model_of
-from rttrr_pin.urdf.sources import several
+from rttrr_pin.urdf.sources import Reading, Source, find, several
 
 
 @click.command
@@ -34,11 +34,8 @@ from rttrr_pin.urdf.sources import several
     type=click.Choice(PARSERS, case_sensitive=False),
     help="Fail also where this parser does not load the robot as written. Repeats.",
 )
-@click.option(
-    "--fix",
-    type=click.Path(path_type=Path),
-    help="Write the file with the repairs that are certain; the rest stays as it is.",
-)
+@target("--fix", "the file with the repairs that are certain, the rest as it is,")
+@xacro
 @target("--sarif", "the findings as SARIF 2.1.0, for code hosts,")
 @target("--junit", "each check as a test in JUnit's XML, for CI servers,")
 @outcome
@@ -49,7 +46,9 @@ def inspect(
     ignore: tuple[str, ...],
     strict: bool,
     fail_on: tuple[str, ...],
-    fix: Path | None,
+    fix: str | None,
+    xacro: bool,
+    xacro_arg: tuple[str, ...],
     sarif: str | None,
     junit: str | None,
     json: str | None,
@@ -66,10 +65,11 @@ def inspect(
     check_targets(reports, robots.values() or [robot])
     check_targets(reports | {"--fix": fix})
     chosen(select, ignore)  # that there are such checks, before the first of many files is read
-    console = Output(quiet=quiet or "-" in reports.values(), soft_wrap=True)
+    console = Output(quiet=quiet or "-" in (*reports.values(), fix), soft_wrap=True)
+    reading = Reading(xacro, xacro_arguments(xacro_arg))
 
-    def look(source: str | Path) -> Inspection:
-        document = read_document(source)
+    def look(source: Path | Source) -> Inspection:
+        document = read_document(source, reading)
         model_of(document)  # as `load` does: it refuses numbers that overflow
         return inspect_document(document, select=select, ignore=ignore)
 
@@ -84,10 +84,12 @@ def inspect(
         write_json(json, lambda: many.to_dict(entries, demands))
         console.print(coloured(many.summary(entries, demands, console.width)))
     else:
-        result = look(robot)
+        source = find(robot, reading)
+        result = look(source)
         repaired = None if fix is None else repair(result)
-        if fix is not None and repaired is not None:
-            write_whole(fix, repaired.text)
+        if repaired is not None:
+            text = ("\ufeff" if source.text.startswith(codecs.BOM_UTF8) else "") + repaired.text
+            write_text(fix, lambda: text)
         extra = {} if repaired is None else {"repair": repair_data(repaired)}
         write_json(json, lambda: result.to_dict() | extra)
         console.print(coloured(result.summary(full, console.width)))

@@ -205,7 +205,10 @@ def chosen(select: tuple[str, ...], ignore: tuple[str, ...]) -> list[Check]:
     for prefix in (*select, *ignore):
         if not prefix or not any(check.id.startswith(prefix) for check in CHECKS):
             raise UnknownNameError("check", prefix, [check.id for check in CHECKS])
-    return [check for check in CHECKS if check.id.startswith(select or "") and not check.id.startswith(ignore)]
+    chosen = [check for check in CHECKS if check.id.startswith(select or "") and not check.id.startswith(ignore)]
+    if not chosen:
+        raise InputError(f"no check is left to run: {', '.join(ignore)} leaves out all that was selected")
+    return chosen
 
 
 @dataclass(frozen=True)

@@ -48,20 +48,44 @@ gravity = click.option(
     "--gravity", metavar="X,Y,Z", help="Gravity field in the base frame [m/s^2]; without it 0,0,-9.81."
 )
 base = click.option("--base", default="fixed", help="fixed (bolted down) or floating.")
+xacro = group(
+    flag(
+        "--xacro", help="Expand a xacro file, which runs the Python expressions in it: only for files that you trust."
+    ),
+    click.option(
+        "--xacro-arg",
+        multiple=True,
+        metavar="NAME:=VALUE",
+        help="The value of a <xacro:arg>; with --xacro, or instead of it. Repeats.",
+    ),
+)
 friction = flag("--friction", help="Take damping and friction of <dynamics> into tau.")
 quiet = flag("--quiet", "-q", help="Print nothing but errors.")
 outcome = group(target("--json", "the outcome as JSON"), quiet)
 
 
+def xacro_arguments(words: Iterable[str]) -> dict[str, object]:
+    """The words of `--xacro-arg`, by name."""
+    values: dict[str, object] = {}
+    for word in words:
+        name, sign, value = word.partition(":=")
+        if not sign or not name:
+            raise InputError(f"--xacro-arg is {word!r}: expected NAME:=VALUE, such as dof:=7")
+        values[name] = value
+    return values
+
+
 def numbers_of(option: str, text: str, count: int) -> list[float]:
     """Numbers separated by commas or blanks."""
-    from rttrr_pin.urdf.decimals import NUMBER
+    from rttrr_pin.urdf.decimals import NUMBER, beyond_doubles
 
     words = text.replace(",", " ").split()
     numbers = [float(word) for word in words] if all(NUMBER.fullmatch(word) for word in words) else []
     if len(numbers) != count:
         example = ",".join("0" for _ in range(count))
         raise InputError(f"{option} is {text!r}: expected {count} numbers separated by commas, such as {example}")
+    for fault in filter(None, map(beyond_doubles, words)):
+        raise InputError(f"{option}: {fault}")
     return numbers
 
 

@@ -2,17 +2,30 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
 from functools import cached_property
 
+from rttrr_pin.errors import shortened
+
 NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
 """A decimal number as XML Schema writes it, in ASCII; no unit, comma, hexadecimal digits, `nan` or `inf`."""
 
 FINEST = -400
 """Power of ten below which a zero is just zero: 0e-999999999 is a valid text, and 10**999999999 fits nowhere."""
+
+
+def beyond_doubles(word: str) -> str:
+    """What is wrong with a decimal number that no double stands for; empty where one does."""
+    value = float(word)
+    if not math.isfinite(value):
+        return f"{shortened(word)} is larger than float64 can hold: check the exponent"
+    if value == 0.0 and re.search(r"[1-9]", re.split("[eE]", word)[0]):
+        return f"{shortened(word)} is smaller than float64 can hold: write 0, or check the exponent"
+    return ""
 
 
 @dataclass(frozen=True)

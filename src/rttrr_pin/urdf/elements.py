@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import io
-import math
 import re
 from typing import Any
 
 from lxml import etree
 
 from rttrr_pin.errors import UrdfError, shortened
-from rttrr_pin.urdf.decimals import NUMBER, Number, NumberList
+from rttrr_pin.urdf.decimals import NUMBER, Number, NumberList, beyond_doubles
 from rttrr_pin.urdf.sources import Source
 
 UTF_8 = ("UTF-8", "UTF8", "ASCII", "US-ASCII")
@@ -84,11 +83,8 @@ class Element:
         shown = shortened(word)
         if not NUMBER.fullmatch(word):
             raise self.error(f"{where}: {shown!r} is not a decimal number{_hint(word)}")
-        value = float(word)
-        if not math.isfinite(value):
-            raise self.error(f"{where}: {shown} is larger than float64 can hold: check the exponent")
-        if value == 0.0 and re.search(r"[1-9]", re.split("[eE]", word)[0]):
-            raise self.error(f"{where}: {shown} is smaller than float64 can hold: write 0, or check the exponent")
+        if fault := beyond_doubles(word):
+            raise self.error(f"{where}: {fault}")
 
 
 def _hint(text: str) -> str:

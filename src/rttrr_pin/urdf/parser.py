@@ -16,7 +16,7 @@ from rttrr_pin.errors import nearest, shortened
 from rttrr_pin.urdf.decimals import Number, NumberList
 from rttrr_pin.urdf.document import Placement, UrdfDocument, UrdfInertial, UrdfJoint, UrdfLink, UrdfMimic, UrdfShape
 from rttrr_pin.urdf.elements import Element, parse_xml
-from rttrr_pin.urdf.sources import AnySource, find
+from rttrr_pin.urdf.sources import AS_IT_STANDS, AnySource, Reading, find
 from rttrr_pin.urdf.vocabulary import ATTRIBUTES, check_words
 
 SUPPORTED = tuple(JOINT_TYPES)
@@ -25,11 +25,12 @@ LONGEST_CHAIN = 100
 """Joints that follow one another; to follow a chain takes time with the square of its length."""
 
 
-def read_document(source: AnySource) -> UrdfDocument:
+def read_document(source: AnySource, reading: Reading = AS_IT_STANDS) -> UrdfDocument:
     """Read and check a robot's file.
 
     Args:
         source: a name, a path, a text, ...: see `sources.py`.
+        reading: what the user allows.
 
     Raises:
         UnknownNameError: there is no such robot or file.
@@ -37,7 +38,7 @@ def read_document(source: AnySource) -> UrdfDocument:
         UrdfError: the file is no URDF, is damaged, or says something that has no dynamics; with line, element, value
             and fix.
     """
-    file = find(source)
+    file = find(source, reading)
     root = parse_xml(file)
     check_words(root, file.name)
     robot = Element(root, file.name, "robot")

@@ -15,14 +15,15 @@ from rttrr_pin.core.model import Link, Model
 from rttrr_pin.errors import InputError, UrdfError, shortened
 from rttrr_pin.urdf.document import NO_INERTIAL, UrdfDocument, UrdfJoint, UrdfLink
 from rttrr_pin.urdf.parser import read_document
-from rttrr_pin.urdf.sources import AnySource, find
+from rttrr_pin.urdf.sources import AS_IT_STANDS, AnySource, Reading, find
 
 
-def read_urdf(source: AnySource) -> Model:
+def read_urdf(source: AnySource, reading: Reading = AS_IT_STANDS) -> Model:
     """Read a robot.
 
     Args:
         source: a name, a path, a text, ...: see `sources.py`.
+        reading: what the user allows.
 
     Returns:
         The model, links and joints in Pinocchio's order (see `UrdfDocument.walk`), or in an object's own.
@@ -30,7 +31,7 @@ def read_urdf(source: AnySource) -> Model:
     Raises:
         UnknownNameError, InputError, UrdfError: as in `read_document`; UrdfError also where numbers overflow.
     """
-    file = find(source)
+    file = find(source, reading)
     model = model_of(read_document(file))
     if file.model is not None:
         model = _completed(model, file.model)

@@ -6,7 +6,7 @@
 | `rttrr` | a bundled robot; it wins over a file of that name (`./rttrr` is the file) |
 | `example:panda` | a file of the package `example-robot-data`, by the names of `examples()` |
 | a path to a folder | the one `.urdf` or `.xacro` file in it or below |
-| a path that ends in `.xacro` | what ROS's package `xacro` makes of it; messages then give the lines of its output |
+| a path of a xacro file | what ROS's package `xacro` makes of it, if asked to; messages give the lines of that |
 | any other path | a URDF file |
 | a `pinocchio.Model`, `mujoco.MjModel`, `yourdfpy.URDF` | see `pinocchio_object.py` and the like |
 
@@ -18,13 +18,15 @@ from __future__ import annotations
 import os
 import sys
 from collections import Counter
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import Any, TypeAlias
 
 from rttrr_pin.core.model import Model, Note
 from rttrr_pin.errors import InputError, UnknownNameError, UrdfError, shortened
+from rttrr_pin.urdf import xacro
 
 AnySource: TypeAlias = Any
 """What `load` takes: str | os.PathLike[str] | pinocchio.Model | mujoco.MjModel | yourdfpy.URDF."""
@@ -32,16 +34,41 @@ AnySource: TypeAlias = Any
 OBJECTS = {"pinocchio": "Model", "mujoco": "MjModel", "yourdfpy": "URDF"}
 """Classes of objects that are robots, by library; a library of which there is an object is loaded."""
 
-LARGEST_FILE = 64 * 2**20
+LARGEST_FILE = 16 * 2**20
 """Bytes; the largest URDF of known robots has about one MiB."""
+
+MOST_TAGS = 100_000
+"""Of 1,500 published files none has more than 6,400; to read more takes more seconds than anyone waits."""
 
 EXAMPLE = "example:"
 """What the name of an example robot starts with."""
 
 EXAMPLES_PACKAGE = "example-robot-data"
 
-SUFFIXES = (".urdf", ".xacro")
+SUFFIXES = (".urdf", xacro.SUFFIX)
 """How the robots in a folder end."""
+
+MOST_ENTRIES = 100_000
+"""Files and folders that are looked through for robots: some seconds, and more than any collection of robots has."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reading:
+    """What is done with a file only where the user asks for it.
+
+    Attributes:
+        xacro: whether a xacro file is expanded, which runs the Python in it.
+        xacro_args: values of its <xacro:arg>, by name; to pass some asks for it too.
+    """
+
+    xacro: bool = False
+    xacro_args: Mapping[str, object] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "xacro_args", xacro.arguments(self.xacro_args))
+
+
+AS_IT_STANDS = Reading()
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +90,13 @@ class Source:
     made_from: str = ""
     model: Model | None = None
     notes: tuple[Note, ...] = ()
+
+    def __post_init__(self) -> None:
+        tags = self.text.count(b"<")
+        if tags > MOST_TAGS:
+            raise UrdfError(
+                f"has {tags:,} tags, more than the {MOST_TAGS:,} that are read: is it a URDF?", source=self.name
+            )
 
 
 @cache
@@ -101,18 +135,37 @@ def examples() -> dict[str, Path]:
 def robots_in(folder: str | os.PathLike[str]) -> dict[str, Path]:
     """The `.urdf` and `.xacro` files in a folder and below, by their path from it; hidden ones are left out.
 
+    A folder below that cannot be looked into stands among them, with a slash behind its name: who reads it says why.
+
     Raises:
-        UrdfError: it is no folder, or holds no such file.
+        UrdfError: it is no folder, cannot be read, holds no such file, or far more than anyone keeps robots among.
     """
     top = Path(folder)
+    shown = shortened(str(folder))
     if not top.is_dir():
-        raise UrdfError("is no folder, expected one that holds URDF files", source=shortened(str(folder)))
-    paths = {path.relative_to(top): path for path in sorted(top.rglob("*")) if path.suffix in SUFFIXES}
-    shown = (path for path in paths if not any(part.startswith(".") for part in path.parts))
-    robots = {path.as_posix(): paths[path] for path in shown if paths[path].is_file()}
-    if not robots:
-        raise UrdfError("is a folder without a .urdf or .xacro file: name the file", source=shortened(str(folder)))
-    return robots
+        raise UrdfError("is no folder, expected one that holds URDF files", source=shown)
+    shut: dict[Path, str] = {}
+    robots: list[Path] = []
+    seen = 0
+    for place, folders, files in os.walk(
+        top, onerror=lambda error: shut.update({Path(error.filename): str(error.strerror)})
+    ):
+        folders[:] = [name for name in folders if not name.startswith(".")]
+        seen += len(folders) + len(files)
+        if seen > MOST_ENTRIES:
+            raise UrdfError(
+                f"holds more than {MOST_ENTRIES:,} files and folders, of which {len(robots)} robots were found so far: "
+                "name a folder nearer to the robots",
+                source=shown,
+            )
+        robots += [Path(place, name) for name in files if Path(name).suffix in SUFFIXES and not name.startswith(".")]
+    if top in shut:
+        raise UrdfError(f"cannot be read: {shut[top]}", source=shown)
+    found = {path.relative_to(top).as_posix(): path for path in robots if _may_be_a_file(path)}
+    found |= {f"{path.relative_to(top).as_posix()}/": path for path in shut}
+    if not found:
+        raise UrdfError("is a folder without a .urdf or .xacro file: name the file", source=shown)
+    return dict(sorted(found.items(), key=lambda item: Path(item[0])))
 
 
 def several(robot: str) -> dict[str, Path]:
@@ -123,7 +176,14 @@ def several(robot: str) -> dict[str, Path]:
     return files if len(files) > 1 else {}
 
 
-def find(source: AnySource) -> Source:
+def _may_be_a_file(path: Path) -> bool:
+    try:
+        return path.is_file()
+    except OSError:  # in a folder that may be listed and no more: who reads it says so
+        return True
+
+
+def find(source: AnySource, reading: Reading = AS_IT_STANDS) -> Source:
     """The text behind a source; see the table at the top of this file.
 
     Raises:
@@ -139,9 +199,9 @@ def find(source: AnySource) -> Source:
         if module is not None and isinstance(source, getattr(module, kind)):
             return object_source(source, module, f"{library}.{kind}")
     if isinstance(source, str):
-        return _find_text(source)
+        return _find_text(source, reading)
     if isinstance(source, os.PathLike) and isinstance(os.fspath(source), str):
-        return _find_path(Path(source))
+        return _find_path(Path(source), reading)
     raise InputError(
         f"the source is a {type(source).__name__}, expected a name, a path, the text of a URDF, or an object: "
         f"{', '.join(f'{library}.{kind}' for library, kind in OBJECTS.items())}"
@@ -196,7 +256,7 @@ def mjcf_path(source: Any) -> Path | None:
         return None  # whoever reads it as a URDF says what is wrong
 
 
-def _find_text(source: str) -> Source:
+def _find_text(source: str, reading: Reading) -> Source:
     if source.lstrip("\ufeff \t\r\n").startswith("<"):
         return Source("<string>", _encoded(source, "<string>"))
     if not source.strip():
@@ -207,10 +267,10 @@ def _find_text(source: str) -> Source:
         return _file(bundled()[source].name, bundled()[source])
     if source.startswith(EXAMPLE):
         return _file(source, _example(source.removeprefix(EXAMPLE)))
-    return _find_path(Path(source))
+    return _find_path(Path(source), reading)
 
 
-def _find_path(path: Path) -> Source:
+def _find_path(path: Path, reading: Reading) -> Source:
     try:
         path = path.expanduser()
         if path.is_dir():
@@ -223,8 +283,10 @@ def _find_path(path: Path) -> Source:
         fix = f"check the path, or write {EXAMPLE}NAME for an example robot"
         raise UnknownNameError("bundled robot or file", shortened(str(path)), bundled(), fix)
     file = _file(str(path), path)
-    if path.suffix == ".xacro":
-        return Source(f"{path} (as xacro expands it)", _expanded(path), file.folder)
+    if (reading.xacro or reading.xacro_args) and xacro.is_xacro(path, file.text):
+        return Source(f"{path} (as xacro expands it)", xacro.expanded(path, reading.xacro_args), file.folder)
+    if path.suffix == xacro.SUFFIX:
+        raise xacro.refusal(path)
     return file
 
 
@@ -233,7 +295,10 @@ def _file(name: str, path: Path) -> Source:
 
 
 def _only_robot(folder: Path) -> Path:
-    robots = robots_in(folder)
+    found = robots_in(folder)
+    robots = {name: path for name, path in found.items() if not name.endswith("/")}
+    if not robots:
+        raise UrdfError(f"holds no robot, and {', '.join(found)} cannot be read", source=shortened(str(folder)))
     if len(robots) > 1:
         names = ", ".join(list(robots)[:12]) + (f", ... ({len(robots)} in all)" if len(robots) > 12 else "")
         raise UrdfError(
@@ -256,35 +321,6 @@ def _example(name: str) -> Path:
 def _folder(parts: tuple[str, ...]) -> str:
     """The robot's folder in `.../robots/panda_description/urdf/panda.urdf`, without `_description`."""
     return parts[parts.index("robots") + 1].removesuffix("_description")
-
-
-def _expanded(path: Path) -> bytes:
-    """The URDF that a xacro file stands for, line by line what the command `xacro FILE` prints.
-
-    A xacro file is a program: its expressions are evaluated as Python, and may read other files and the environment.
-    """
-    try:
-        import xacro
-    except ImportError:
-        raise UrdfError(
-            "is a xacro file, which needs the package xacro: pip install 'rttrr-pin[xacro]'", source=str(path)
-        ) from None
-    try:
-        text: str = xacro.process_file(str(path)).toprettyxml(indent="  ")
-        return text.encode()
-    except RecursionError:
-        raise UrdfError("xacro cannot expand it: a macro calls itself without end", source=str(path)) from None
-    except Exception as error:  # the file's own expressions run here, and may raise anything
-        reason = " ".join(str(error).split()) or repr(error)
-        raise UrdfError(f"xacro cannot expand it: {reason}{_xacro_fix(reason)}", source=str(path)) from error
-
-
-def _xacro_fix(reason: str) -> str:
-    if "ament_index_python" in reason:
-        return ": $(find ...) asks ROS; source its setup first, or run xacro there and pass the URDF"
-    if "Undefined substitution argument" in reason:
-        return ": run `xacro FILE NAME:=VALUE` yourself and pass the URDF, or give the argument a default"
-    return ""
 
 
 def _encoded(text: str, name: str) -> bytes:

@@ -14,7 +14,18 @@ from rttrr_pin.core.payload import RandomPayload
 from rttrr_pin.core.wrench import Wrench
 from rttrr_pin.errors import InputError
 from rttrr_pin.loading import load
-from rttrr_pin.reporting.options import base, check_targets, friction, gravity, group, numbers_of, payload_link, seed
+from rttrr_pin.reporting.options import (
+    base,
+    check_targets,
+    friction,
+    gravity,
+    group,
+    numbers_of,
+    payload_link,
+    seed,
+    xacro,
+    xacro_arguments,
+)
 from rttrr_pin.robot import Robot
 
 programs = group(
@@ -44,7 +55,7 @@ payload = click.option(
 payload_frame = group(
     payload_link, click.option("--payload-axes", default="link", help="The axes of the six numbers: link or base.")
 )
-conditions = group(payload_frame, gravity, base, friction)
+conditions = group(payload_frame, gravity, base, friction, xacro)
 drawn = group(seed, sampling, payload, conditions)
 """The states that `validate` draws."""
 
@@ -64,6 +75,8 @@ class RunOptions:
     gravity: str | None = None
     base: str = "fixed"
     friction: bool = False
+    xacro: bool = False
+    xacro_arg: tuple[str, ...] = ()
 
     def unusual(self) -> list[str]:
         """The options that differ from their defaults, as words of a command line."""
@@ -90,6 +103,7 @@ class RunOptions:
         field: dict[str, Any] = {}
         if self.gravity is not None:
             field["gravity"] = numbers_of("--gravity", self.gravity, 3)
+        field |= {"xacro": self.xacro, "xacro_args": xacro_arguments(self.xacro_arg)}
         return load(self.robot, base=self.base, friction=self.friction, **field)  # type: ignore[arg-type]
 
     def chosen(self) -> dict[str, Any]:

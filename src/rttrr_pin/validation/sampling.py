@@ -33,6 +33,9 @@ PER_COUNTER = 4
 DEFAULT = {"rad": math.pi, "m": 1.0}
 """Half range of a coordinate, and largest rate per second, where the file leaves them open or sets them to 0."""
 
+NO_LIMIT = 1e9
+"""Beyond it a limit says that there is none: files have 1e16 or the largest double for that."""
+
 ACCELERATION = 10.0
 """Largest acceleration, per second squared; URDF has no limit for it."""
 
@@ -60,7 +63,7 @@ class Ranges:
         """The limits of the file, and finite defaults where it has none."""
         freedoms = [(joint, "rad" if rotates else "m") for joint in model.moving for rotates in joint.type.rotations]
         lower, upper = np.array([_range(joint, DEFAULT[unit]) for joint, unit in freedoms]).reshape(-1, 2).T
-        limits = [(joint.limits.velocity, DEFAULT[unit]) for joint, unit in freedoms]
+        limits = [(_limit(joint.limits.velocity), DEFAULT[unit]) for joint, unit in freedoms]
         rate = [limit if math.isfinite(limit) and limit > 0.0 else default for limit, default in limits]
         return cls(lower, upper, np.array(rate), np.array([unit == "rad" for _, unit in freedoms], dtype=bool))
 
@@ -194,9 +197,14 @@ class Sampler:
         return (Load(self._link, unit[:, :3] * self.payload.force, unit[:, 3:] * self.payload.moment),)
 
 
+def _limit(limit: float) -> float:
+    """A limit, or infinity where it is none in truth."""
+    return limit if abs(limit) < NO_LIMIT else math.copysign(math.inf, limit)
+
+
 def _range(joint: Joint, half: float) -> tuple[float, float]:
     """A finite range of coordinates; half of it where the file leaves an end open."""
-    lower, upper = joint.limits.lower, joint.limits.upper
+    lower, upper = map(_limit, (joint.limits.lower, joint.limits.upper))
     if lower == upper == 0.0 or (math.isinf(lower) and math.isinf(upper)) or joint.nv > 1:
         return -half, half
     if math.isinf(lower):
