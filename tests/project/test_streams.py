@@ -69,7 +69,7 @@ COMMANDS: dict[str, list[str]] = {
     "derive": ["derive", "{robot}"],
     "inspect": ["inspect", "{robot}"],
     "audit": ["audit"],
-    "new": ["new", "RT", "--name", "b\u00e4r"],
+    "new": ["new", "RT"],
 }
 
 

@@ -16,6 +16,7 @@ from importlib import import_module
 import llvmlite
 import llvmlite.binding as llvm
 import numpy as np
+from llvmlite.binding.newpassmanagers import NewPassManager
 from numpy.typing import NDArray
 
 from rttrr_pin.compile.call_program import CallProgram
@@ -105,14 +106,15 @@ class LlvmEmitter:
             text, between = calls(program, layout), program.between
         else:
             text, between = body(program, layout)
-        # A context of its own, which goes with the module: the global one keeps every constant it has ever seen.
-        context = llvm.create_context()
-        module = llvm.parse_assembly(driver(program, layout, between), context)
+        module = llvm.parse_assembly(driver(program, layout, between))
         options = llvm.create_pipeline_tuning_options(speed_level=OPTIMISATION)
         options.loop_vectorization = options.slp_vectorization = options.loop_unrolling = False
         builder = llvm.create_pass_builder(self._machine(), options)
-        builder.getModulePassManager().run(module, builder)
-        module.link_in(llvm.parse_assembly(text, context))  # straight lines: there is nothing to be found in them
+        passes = builder.getModulePassManager()
+        passes.run(module, builder)
+        NewPassManager._dispose(passes)  # a method that llvmlite's own classes hide: passes would stay, 0.1 MB of them
+        passes.detach()
+        module.link_in(llvm.parse_assembly(text))  # straight lines: there is nothing to be found in them
         module.verify()
         return module
 
