@@ -20,7 +20,6 @@ READY = """
 import signal, sys
 signal.signal(signal.SIGINT, signal.default_int_handler)  # a test run in the background hands down an ignored SIGINT
 from rttrr_pin.cli import main
-from support.serial_chains import EXAMPLES
 main(["validate", "--states", "5", "--quiet"])  # imports everything: some libraries lose a Ctrl-C in that time
 print("ready", flush=True)
 sys.exit(main(sys.argv[1:]))
