@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
@@ -161,7 +161,7 @@ class Robot:
             InputError: no output, or one twice; or the emitter cannot be imported.
         """
         names = [outputs] if isinstance(outputs, str) else outputs
-        if not isinstance(names, list | tuple) or not all(isinstance(name, str) for name in names):
+        if not isinstance(names, list | tuple) or not all(isinstance(name, Hashable) for name in names):
             raise InputError(f"outputs is {outputs!r}: pass a name, or several in a tuple, such as ('tau', 'n')")
         if emitter is not None and not isinstance(emitter, str):
             raise InputError(f"emitter is {emitter!r}: pass its name, such as 'llvm', or None")

@@ -206,3 +206,14 @@ def test_mapping_types_other_than_dict_are_taken(rttrr: Robot) -> None:
     np.testing.assert_array_equal(
         rttrr.inverse_dynamics(Table(), ZERO, ZERO).tau, rttrr.inverse_dynamics(ZERO + 0.5, ZERO, ZERO).tau
     )
+
+
+@pytest.mark.parametrize("outputs", [None, 3, {"tau": 1}, [["tau"]]], ids=repr)
+def test_outputs_that_are_no_names_are_told(rttrr: Robot, outputs: Any) -> None:
+    with pytest.raises(InputError, match="pass a name, or several"):
+        rttrr.compile(outputs)
+
+
+def test_effects_that_are_no_dict_are_told(rttrr: Robot) -> None:
+    with pytest.raises(InputError, match="pass a dict from joint name to JointEffects"):
+        rttrr.with_joint_effects(None)  # type: ignore[arg-type]
