@@ -130,14 +130,16 @@ class ModelMismatchError(ImplementationError):
 
     Attributes:
         differences: one line for each number that differs, with the link or joint it belongs to.
+        note: what else its reader said of the file.
     """
 
-    def __init__(self, library: str, differences: Iterable[str]) -> None:
-        self.library, self.differences = library, tuple(differences)
+    def __init__(self, library: str, differences: Iterable[str], note: str = "") -> None:
+        self.library, self.differences, self.note = library, tuple(differences), note
         shown = "\n  ".join(self.differences[:12])
         more = f"\n  and {len(self.differences) - 12} more" if len(self.differences) > 12 else ""
         super().__init__(
             f"{library} built another model than the file describes, so comparing would mislead:\n  {shown}{more}"
+            f"{note and chr(10)}{note}"
         )
 
 

@@ -20,6 +20,7 @@ from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.scalars import FLOAT
 from rttrr_pin.core.tangent import TIME, over_duals, tangent
 from rttrr_pin.exact.rounding import bounded_dynamics
+from rttrr_pin.implementations import default_allowance
 from rttrr_pin.laws import check_laws
 from rttrr_pin.validation import Sampler
 from support.bodies import random_joint, random_link
@@ -203,3 +204,13 @@ def test_a_screw_is_a_turn_and_a_slide_that_follows_it() -> None:
     one, other = (Robot(model).inverse_dynamics(state.q, state.v, state.a) for model in (screw, pair))
     np.testing.assert_allclose(one.tau, other.tau, atol=1e-12 * np.abs(other.tau).max())
     np.testing.assert_allclose(one.n, other.n[:, [0, 2, 3]], atol=1e-12 * np.abs(other.n).max())
+
+
+@pytest.mark.parametrize("joint_type", MOVING, ids=str)
+def test_a_driving_force_is_allowed_what_it_is_made_of(joint_type: JointType) -> None:
+    """By the sizes of f and n that enter it: a tenth of a running error bound and more, also of a screw of a long pitch."""
+    for pitch in (1e-9, 1.0, 1e9):
+        own = replace(joint_type, pitch=pitch) if isinstance(joint_type, Helical) else joint_type
+        model = chain(REVOLUTE, own, PRISMATIC, seed=4).model
+        batch = Sampler(model, "mixed").draw(0, 40)
+        assert (10 * default_allowance(batch)["tau"] >= batch.recursion[1].tau).all()

@@ -268,3 +268,17 @@ def test_a_sensor_beside_a_branch_carries_its_own_weight_alone() -> None:
     result = robot.inverse_dynamics([0.3, 0.4], [0, 0], [0, 0])
     assert abs(np.linalg.norm(result.at("sensor")["f"]) - 9.81 * mass) <= ROUNDING * mass
     assert validate(robot, "recursion", n_states=50).passed
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("multiplier", [1e-200, -1e-200, 1.5, 0.0])
+@pytest.mark.parametrize("name", ["recursion", "kernel", "lagrange", "pinocchio", "mujoco"])
+def test_a_followers_friction_has_the_sign_of_its_rate_though_that_underflows(
+    name: str, multiplier: float, sign: float
+) -> None:
+    """By virtual work: |multiplier| friction sign(rate of the followed joint)."""
+    model = following(multiplier)[0].with_joint_effects({"joint_1": JointEffects(friction=5.0)}).model
+    v = np.array([[0.0, sign * 1e-200]])
+    got = evaluated(name, model, np.zeros((1, 2)), v, np.zeros((1, 2)))
+    assert got.tau_joint is not None
+    assert got.tau_joint[0].tolist() == [0.0, sign * abs(multiplier) * 5.0]

@@ -30,7 +30,7 @@ def test_the_walk_meets_everything_once_and_causes_first(seed: int) -> None:
 
 def test_deviations_are_put_in_that_order(rttrr: Robot) -> None:
     names = [("tau", at) for at in rttrr.joint_names] + [(key, at) for key in "FNfn" for at in rttrr.link_names]
-    ordered = in_order(rttrr.model, [Deviation(*name, 0.0, 0.0) for name in names])
+    ordered = in_order(rttrr.model, [Deviation(*name, 0.0, 0.0, 0.0, "N") for name in names])
     places = [(one.quantity, one.at) for one in ordered]
     assert places[:3] == [("F", "link_1"), ("N", "link_1"), ("F", "link_2")]
     assert places[12:15] == [("f", "tool"), ("n", "tool"), ("f", "link_5")] and places[16] == ("tau", "joint_5")

@@ -16,6 +16,7 @@ from hypothesis import strategies as st
 
 import rttrr_pin
 from rttrr_pin import RandomPayload, Robot, Wrench
+from rttrr_pin.core.arrays import norm
 from rttrr_pin.core.dynamics import evaluate
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.payload import Load
@@ -434,3 +435,23 @@ def test_a_load_of_the_batch_goes_with_its_state(rttrr: Robot) -> None:
     for k in range(2):
         one = enclose(rttrr.model, zeros[k], zeros[k], zeros[k], [Load(5, forces[k], np.zeros(3))])
         np.testing.assert_array_equal(one.f.lower, both.f.lower[k])
+
+
+@pytest.mark.parametrize("parameters", ["doubles", "read", "text"])
+def test_a_result_says_whose_numbers_it_encloses(rttrr: Robot, parameters: Any) -> None:
+    zeros = [[0.0] * 5] * 2
+    result = rttrr.enclose(zeros, zeros, zeros, parameters=parameters)
+    assert result.parameters == result[0].parameters == result.to_dict()["parameters"] == parameters
+
+
+@pytest.mark.parametrize("power", [-250, -100, 100, 200])
+def test_enclosures_are_narrow_at_any_size(rttrr: Robot, power: int) -> None:
+    """Each is narrow beside the norm of its own vector, however large or small that is."""
+    states = Sampler(rttrr.model).draw(0, 3)
+    result = enclose(
+        rttrr.model.with_gravity(np.array([0.1, 0.2, -9.8]) * 10.0**power), states.q, 0 * states.v, 0 * states.a
+    )
+    assert result.tight.all()
+    for key, x in result.items():
+        if key in ("F", "f", "n"):
+            assert (norm(x.upper - x.lower) <= 2.0**-50 * norm(x.mid)).all()

@@ -11,11 +11,13 @@ import pytest
 
 import rttrr_pin
 from rttrr_pin import RandomPayload, Robot
+from rttrr_pin.core.arrays import norm
 from rttrr_pin.core.dynamics import bodies, dynamics
 from rttrr_pin.core.scalars import UNIT_ROUNDOFF
-from rttrr_pin.exact import BOUNDED, Bounded, bounded_dynamics
+from rttrr_pin.exact import BOUNDED, Bounded, bounded_dynamics, enclose
 from rttrr_pin.validation import SAMPLINGS, Sampler
 from support.high_precision import exact_dynamics, mp_arithmetic, mp_rotation
+from support.implementations import evaluated
 from support.recursion import recursion
 from support.serial_chains import random_chain
 from support.tolerances import ROUNDING
@@ -167,3 +169,19 @@ def test_a_quaternion_that_is_not_quite_of_unit_length_is_within_the_bound(by) -
             error = np.abs(values[k] - np.array(truth, dtype=object))
             assert (error <= bounds[k]).all()
             assert error.max() > ROUNDING  # which the rounding of exact coordinates would not explain
+
+
+@pytest.mark.parametrize("power", [-300, -200, -160])
+def test_what_underflows_is_within_its_bound(rttrr: Robot, power: int) -> None:
+    """Rates whose products are below all of float64, on the recursion, the kernel and Lagrange's equations."""
+    states = Sampler(rttrr.model).draw(0, 8)
+    model = rttrr.model.with_gravity(np.zeros(3))
+    q, v, a = states.q, states.v * 10.0**power, states.a * 10.0 ** (2 * power)
+    enclosures = enclose(model, q, v, a)
+    for name in ("recursion", "kernel", "lagrange"):
+        got = evaluated(name, model, q, v, a)
+        assert got.allowance is not None
+        for key, x in got.values.items():
+            true = getattr(enclosures, key)
+            off = np.maximum(true.lower - x, x - true.upper).clip(0.0)
+            assert ((off if key == "tau" else norm(off)) <= got.allowance[key]).all(), (name, key)

@@ -61,7 +61,7 @@ def test_a_right_program_passes_and_a_planted_error_is_found(tmp_path: Path) -> 
 def test_few_digits_are_judged_as_such(tmp_path: Path, form: str) -> None:
     """Right to the last digit printed; an error of a few units of that digit is found."""
     right = made(tmp_path, f'print("{form}" % tau)')
-    assert right.digits is not None and f"judged at {right.digits} digits" in right.note
+    assert right.digits is not None and f"judged at {right.digits} digits" in right.notes[0]
     assert validate(pendulum(), right, "recursion", n_states=300).passed
     wrong = made(tmp_path, f'print("{form}" % (tau + 3e-4))')
     assert not validate(pendulum(), wrong, "recursion", n_states=300).passed

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 
 from support.serial_chains import inertial, numbers
@@ -62,6 +64,40 @@ def _mimic(rng: np.random.Generator, kinds: np.ndarray, labels: np.ndarray, i: i
         return ""
     multiplier, offset = rng.uniform(-2, 2, 2)
     return f'<mimic joint="joint_{labels[rng.choice(masters)]}" multiplier="{multiplier:.17g}" offset="{offset:.17g}"/>'
+
+
+OF_BODIES = re.compile(r"<(?:mass|inertia|origin) [^>]*>")
+"""Elements whose numbers are made extreme; angles stay."""
+
+ATTRIBUTE = re.compile(r'(\w+)="([^"]*)"')
+
+LEAST_MASS = -15.0
+"""Power of ten; to masses below eps Pinocchio gives another centre."""
+
+LIMITS = 'lower="-2" upper="2" velocity="3"'
+
+
+def extreme_tree(seed: int, joints: int, orders: float = 30.0, signs: bool = True) -> str:
+    """A random tree with numbers from 10^-orders to 10^orders: masses, centres, tensors, places, ranges and rates.
+
+    One in seven is 0. With `signs` masses and moments have either sign; without, they are such as Pinocchio can add up.
+    """
+    rng = np.random.default_rng([seed, joints])
+
+    def size(least: float = -orders) -> str:
+        return f"{10 ** rng.uniform(least, orders):.17g}" if rng.random() < 6 / 7 else "0"
+
+    def attribute(found: re.Match[str]) -> str:
+        name, words = found[1], found[2].split()
+        if name == "rpy":
+            return found[0]
+        positive = not signs and name in ("value", "ixx", "iyy", "izz")
+        least = LEAST_MASS if positive and name == "value" else -orders
+        numbers = (("" if positive or rng.random() < 0.5 else "-") + size(least) for _ in words)
+        return f'{name}="{" ".join(numbers)}"'
+
+    text = OF_BODIES.sub(lambda element: ATTRIBUTE.sub(attribute, element[0]), random_tree(seed, joints))
+    return text.replace(LIMITS, f'lower="-{size()}" upper="{size()}" velocity="{size()}"')
 
 
 MUTATED = (39, 8)

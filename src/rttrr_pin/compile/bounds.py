@@ -5,7 +5,7 @@ Algorithms", section 3.3), counted in units u = 2^-53. With |x - x_true| <= u b_
 least |x| and at least |x_true|:
 
     z = fl(x + y):  b_z = b_x + b_y + |z|
-    z = fl(x y):    b_z = m_x b_y + m_y b_x + |z|     (that is |x| b_y + |y| b_x + 2 u b_x b_y + |z|)
+    z = fl(x y):    b_z = m_x b_y + m_y b_x + |z| + underflow (that is |x| b_y + |y| b_x + 2 u b_x b_y + ...)
     z = fl(x y + w), and with other signs: b_z = m_x b_y + m_y b_x + b_w + |z|
     z = sin x:      b_z = b_x + 2 ulps |z|
 
@@ -15,7 +15,7 @@ Numbers of the robot bring their errors (`ConstantWithError`). Changes of sign, 
 the robot's numbers, are exact.
 
 The bounds are rounded too: that changes a bound by at most some u for each operation on its way, and is covered by one
-factor (`SLACK`). Underflow is not covered; it needs numbers below 1e-290.
+factor (`SLACK`). Where a product underflows, `UNDERFLOW` covers what it and its bound lose.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from rttrr_pin.compile.constants import error_of, is_power_of_two
 from rttrr_pin.compile.expression import FUSED, Graph, Node, Op
 from rttrr_pin.compile.program import Field, Program
 from rttrr_pin.compile.quantities import BOUND
-from rttrr_pin.core.scalars import SINE_ULPS, SLACK, UNIT_ROUNDOFF
+from rttrr_pin.core.scalars import SINE_ULPS, SLACK, UNDERFLOW, UNIT_ROUNDOFF
 
 
 def with_bounds(
@@ -92,7 +92,10 @@ class _Bounder:
             return z, inherited
         if op in (Op.SIN, Op.COS):
             return z, self._sum(self._size(z) * (2.0 * SINE_ULPS), inherited)
-        return z, inherited if self._is_exact(z, args) else self._sum(inherited, self._size(z))
+        if self._is_exact(z, args):
+            return z, inherited
+        bound = self._sum(inherited, self._size(z))
+        return z, bound + UNDERFLOW / UNIT_ROUNDOFF if op is Op.MUL or op in FUSED else bound
 
     def _input(self, place: int) -> Node:
         return Node(self.graph, self.graph.input(place))

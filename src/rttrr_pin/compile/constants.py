@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import math
+import sys
 from hashlib import blake2b
 from itertools import count
 
-from rttrr_pin.core.scalars import UNIT_ROUNDOFF
+from rttrr_pin.core.scalars import UNDERFLOW, UNIT_ROUNDOFF
 
 Origin = tuple[bytes, bool]
 """Which true number is meant, up to its sign, and whether it is the opposite."""
@@ -87,7 +88,7 @@ class ConstantWithError(float):
                 return _known(number if factor > 0.0 else -number)
         x, y, error = float(self), float(other), error_of(other)
         product = x * y
-        rounding = 0.0 if is_power_of_two(x) or is_power_of_two(y) else UNIT_ROUNDOFF * abs(product)
+        rounding = _rounding(product, is_power_of_two(x) or is_power_of_two(y)) if x and y else 0.0
         (one, opposite), (another, turned) = sorted([_origin(self), _origin(other)])
         origin = _combined("*", (one, False), (another, False)), opposite != turned
         return ConstantWithError(product, abs(x) * error + abs(y) * self.error + self.error * error + rounding, origin)
@@ -99,7 +100,7 @@ class ConstantWithError(float):
             return NotImplemented
         x, y, error = float(self), float(other), error_of(other)
         quotient = x / y
-        rounding = 0.0 if is_power_of_two(y) else UNIT_ROUNDOFF * abs(quotient)
+        rounding = _rounding(quotient, is_power_of_two(y)) if x else 0.0
         least = abs(y) - error  # of what is divided by
         inherited = (self.error + abs(quotient) * error) / least if least > 0.0 else math.inf
         (one, opposite), (another, turned) = _origin(self), _origin(other)
@@ -134,6 +135,13 @@ def exactly(x: float, value: float) -> bool:
 def is_power_of_two(x: float) -> bool:
     """Whether it is 1, 2, 4, 1/2, ... or minus one of them."""
     return math.frexp(abs(x))[0] == 0.5
+
+
+def _rounding(result: float, scaled: bool) -> float:
+    """Of a product or quotient of numbers that are not 0; one by a power of two is rounded only where it underflows."""
+    if abs(result) < sys.float_info.min:
+        return UNDERFLOW
+    return 0.0 if scaled else UNIT_ROUNDOFF * abs(result)
 
 
 def _known(x: float) -> ConstantWithError:

@@ -1,4 +1,4 @@
-"""The array type of the package."""
+"""The array type of the package, and the norm of its vectors."""
 
 from __future__ import annotations
 
@@ -9,3 +9,16 @@ from numpy.typing import NDArray
 
 Array: TypeAlias = NDArray[np.float64]
 """An array of float64."""
+
+
+def norm(vectors: Array) -> Array:
+    """The Euclidean norm of the last axis.
+
+    Each vector is divided by a power of two before its numbers are squared: no square of a number that float64 holds
+    overflows or vanishes, and the bits are those of the plain formula. A norm that itself is too large is infinite.
+    """
+    size = np.abs(vectors).max(axis=-1, initial=0.0)
+    exponent = np.frexp(np.where(np.isfinite(size), size, 0.0))[1]
+    lengths: Array = np.linalg.norm(np.ldexp(vectors, -exponent[..., None]), axis=-1)
+    with np.errstate(over="ignore"):
+        return np.ldexp(lengths, exponent)

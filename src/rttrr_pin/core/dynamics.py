@@ -128,21 +128,22 @@ def mimicked(mimic: Mimic, followed: JointState, arithmetic: Arithmetic) -> Join
     """The state of a mimic joint: multiplier q + offset, and its time derivatives."""
     rounded = UNIT_ROUNDOFF if mimic.rounded else 0.0
     multiplier, offset = (arithmetic.number(x, rounded * abs(x)) for x in (mimic.multiplier, mimic.offset))
+    sign = arithmetic.number(float((mimic.multiplier > 0) - (mimic.multiplier < 0)), 0.0)
     (q,), (v,), (a,) = followed.q, followed.v, followed.a
-    return JointState([q * multiplier + offset], [v * multiplier], [a * multiplier])
+    return JointState([q * multiplier + offset], [v * multiplier], [a * multiplier], [v * sign])
 
 
 def joint_effects(effects: JointEffects, state: JointState, arithmetic: Arithmetic) -> list[Scalar]:
     """The force armature a + damping v + friction sign(v) of each degree of freedom; 0 where the joint has none."""
     forces = []
-    for v, a in zip(state.v, state.a, strict=True):
+    for v, a, signed in zip(state.v, state.a, state.signs_of or state.v, strict=True):
         force: Scalar = 0
         if effects.armature:
             force = a * arithmetic.number(effects.armature, 0.0) + force
         if effects.damping:
             force = v * arithmetic.number(effects.damping, 0.0) + force
         if effects.friction:
-            force = arithmetic.sign(v) * arithmetic.number(effects.friction, 0.0) + force
+            force = arithmetic.sign(signed) * arithmetic.number(effects.friction, 0.0) + force
         forces.append(force)
     return forces
 

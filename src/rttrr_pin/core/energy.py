@@ -153,8 +153,8 @@ def joint_effects_power(
     for joint, state, at in zip(model.joints, states, rates, strict=True):
         effects = joint.effects
         coefficients = (effects.armature, effects.damping, effects.friction)
-        for v, a, rate in zip(state.v, state.a, at.v, strict=True):
-            for coefficient, factor in zip(coefficients, (a, v, arithmetic.sign(v)), strict=True):
+        for v, a, signed, rate in zip(state.v, state.a, state.signs_of or state.v, at.v, strict=True):
+            for coefficient, factor in zip(coefficients, (a, v, arithmetic.sign(signed)), strict=True):
                 if coefficient:
                     total = rate * (factor * arithmetic.number(coefficient, 0.0)) + total
     return total

@@ -23,6 +23,10 @@ UNIT_ROUNDOFF = 2.0**-53
 EPS = 2 * UNIT_ROUNDOFF
 """The distance from 1 to the next float64: the unit in which errors are reported."""
 
+UNDERFLOW = 2.0**-970
+"""Absolute, in any unit: more than the 2^-1075 that a product and its bound each lose where they fall below the normal
+numbers of float64. So large that its products with numbers of a robot stay normal, since others are slow."""
+
 SLACK = 1.0 + 1e-9
 """Covers the rounding of running error bounds themselves."""
 

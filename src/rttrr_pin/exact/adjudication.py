@@ -6,6 +6,7 @@ first quantity on this walk that a program has wrong is the one to look at; what
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
@@ -13,6 +14,7 @@ import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
+from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import LINK_QUANTITIES
 from rttrr_pin.exact.enclosures import Enclosures
 
@@ -27,12 +29,21 @@ class Deviation:
         eps: distance to the enclosure in eps of the norm of the true vector, which for tau is the n of its joint (the
             f, where it slides); 0 within the enclosure.
         of_allowance: the same as a part of what the program's rounding can explain.
+        error: the same in the unit of the quantity.
+        unit: N or N m.
     """
 
     quantity: str
     at: str
     eps: float
     of_allowance: float
+    error: float
+    unit: str
+
+    @property
+    def relative(self) -> bool:
+        """Whether eps mean anything: not where the true vector is shorter than what rounding can add to it."""
+        return self.eps * EPS < self.of_allowance or not 0.0 < self.error < math.inf
 
     @property
     def wrong(self) -> bool:
@@ -64,8 +75,8 @@ class Assessment:
 
     @property
     def farthest(self) -> Deviation:
-        """Where it is off by most eps; the first of equals."""
-        return max(self.deviations, key=lambda deviation: deviation.eps)
+        """Where it is off by most eps, of where these mean anything; the first of equals."""
+        return max(self.deviations, key=lambda deviation: (deviation.relative, deviation.eps))
 
 
 @dataclass(frozen=True, slots=True)

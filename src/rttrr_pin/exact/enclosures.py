@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cache
 from typing import Any, get_args
 
 import numpy as np
 from flint import arb
 from numpy.typing import NDArray
 
-from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.arrays import Array, norm
 from rttrr_pin.core.batch import batch_shape, check_overflow, flat, split_columns
 from rttrr_pin.core.dynamics import body_of
 from rttrr_pin.core.model import Model
@@ -20,6 +21,7 @@ from rttrr_pin.core.wrench import QUANTITIES, LinkWrenches
 from rttrr_pin.errors import InputError
 from rttrr_pin.exact.intervals import INTERVAL, LoadFrames, Run, flat_dynamics, interval, precision
 from rttrr_pin.exact.parameters import Parameters, exact_parameters
+from rttrr_pin.exact.rounding import bounded_dynamics
 
 PRECISIONS = (128, 256, 512, 1024, 2048, 4096)
 """Bits of the intervals, tried in this order. At 64 bits, which take as long, one state in two is not tight."""
@@ -27,8 +29,9 @@ PRECISIONS = (128, 256, 512, 1024, 2048, 4096)
 STRAIGHT_LINE_FROM = 32
 """States from which recording the operations costs less time than it saves."""
 
-RELATIVE_WIDTH, ABSOLUTE_WIDTH = 2.0**-80, 2.0**-200
-"""Widths that suffice near zero, relative to the norm of the vector and to the largest number of the quantity."""
+RELATIVE_WIDTH, ABSOLUTE_WIDTH, ROUNDING_WIDTH = 2.0**-80, 2.0**-200, 2.0**-147
+"""Widths that suffice near zero: relative to the norm of the vector; or else to the largest number of the quantity, and
+to what rounding in float64 can do to the vector, which is 2^-53 of all terms that add up to it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -68,6 +71,7 @@ class Enclosures:
         tight: whether every enclosure is as narrow as it can be, (...); see `enclose`.
         links: the names along the links axis.
         joints: the names along the last axis of tau.
+        parameters: whose numbers are enclosed, as in `enclose`.
     """
 
     tau: Enclosure
@@ -79,6 +83,7 @@ class Enclosures:
     tight: NDArray[np.bool_]
     links: tuple[str, ...] = ()
     joints: tuple[str, ...] = ()
+    parameters: Parameters = "doubles"
 
     def items(self) -> Iterator[tuple[str, Enclosure]]:
         """The five quantities with their names, in the order of reports."""
@@ -86,8 +91,8 @@ class Enclosures:
 
     def __getitem__(self, index: int | slice) -> Enclosures:
         """The enclosures of one state or some states of a batch."""
-        parts = {key: value[index] for key, value in self.items()}
-        return Enclosures(**parts, bits=self.bits[index], tight=self.tight[index], links=self.links, joints=self.joints)
+        parts: dict[str, Any] = {key: value[index] for key, value in self.items()}
+        return replace(self, **parts, bits=self.bits[index], tight=self.tight[index])
 
     def to_dict(self) -> dict[str, Any]:
         """The enclosures as lists, for JSON."""
@@ -95,6 +100,7 @@ class Enclosures:
             "schema": 1,
             "links": list(self.links),
             "joints": list(self.joints),
+            "parameters": self.parameters,
             "bits": self.bits.tolist(),
             "tight": self.tight.tolist(),
             **{key: {"lower": x.lower.tolist(), "upper": x.upper.tolist()} for key, x in self.items()},
@@ -108,7 +114,8 @@ def enclose(
 
     An enclosure is tight if it is one double, or two neighbours (three where the true value cannot be told from the
     middle one). It need not be narrower than 2^-80 of the norm of its vector (of the number itself, for tau), nor than
-    2^-200 of the largest number of its quantity or of 1 SI unit, because a true zero has no last bit.
+    2^-200 of the terms that add up to it and of the largest number of its quantity or of 1 SI unit, because a true zero
+    has no last bit.
 
     The formulas are taken as they stand: a quaternion whose length is not exactly 1 rotates by the matrix that they
     yield.
@@ -139,7 +146,13 @@ def enclose(
     loads = [flat(load, batch, rows) for load in loads]
     vectors = [np.broadcast_to(x, (rows, 3)) for load in loads for x in (load.f, load.n)]
     frames = tuple((load.link, load.in_base) for load in loads)
-    numbers, bits, tight = _enclosed(model, np.hstack([q, v, a, *vectors]), frames, parameters)
+
+    @cache
+    def rounding() -> dict[str, Array]:
+        """A running error bound on each number of each state; asked for only where something is near zero."""
+        return dict(bounded_dynamics(model, q, v, a, loads)[1].items())
+
+    numbers, bits, tight = _enclosed(model, np.hstack([q, v, a, *vectors]), frames, parameters, rounding)
     ends = [split_columns(model, end) for end in numbers]
     for parts in ends:
         check_overflow(LinkWrenches.of(parts | {"tau_joint": parts["tau"]}, model.link_names, model.v_names), q, v, a)
@@ -149,11 +162,12 @@ def enclose(
         tight=tight.reshape(batch),
         links=model.link_names,
         joints=model.v_names,
+        parameters=parameters,
     )
 
 
 def _enclosed(
-    model: Model, states: Array, frames: LoadFrames, parameters: Parameters
+    model: Model, states: Array, frames: LoadFrames, parameters: Parameters, rounding: Callable[[], dict[str, Array]]
 ) -> tuple[Array, NDArray[np.int64], NDArray[np.bool_]]:
     """Lower and upper ends of all numbers, (2, N, numbers), the bits that were needed, and which states are tight."""
     rows = len(states)
@@ -170,7 +184,7 @@ def _enclosed(
                 pairs = [enclosing_doubles(x) for x in run(states[row].tolist())]
                 ends[:, row] = np.array(pairs, dtype=np.float64).reshape(-1, 2)[columns].T
         bits[pending] = bits_now
-        tight[pending] = _tight(model, *ends[:, pending])
+        tight[pending] = _tight(model, ends[0, pending], ends[1, pending], pending, rounding)
         pending = pending[~tight[pending]]
     return ends, bits, tight
 
@@ -213,17 +227,22 @@ def enclosing_doubles(x: arb) -> tuple[float, float]:
     return lower, upper
 
 
-def _tight(model: Model, lower: Array, upper: Array) -> NDArray[np.bool_]:
-    """Which states are tight, (N,)."""
+def _tight(
+    model: Model, lower: Array, upper: Array, states: NDArray[np.intp], rounding: Callable[[], dict[str, Array]]
+) -> NDArray[np.bool_]:
+    """Which of some states are tight, (N,); `rounding` bounds that of all, by quantity."""
     narrow = np.nextafter(np.nextafter(lower, np.inf), np.inf) >= upper
     if narrow.all():
         return np.ones(len(lower), dtype=np.bool_)
     with np.errstate(over="ignore", invalid="ignore"):
-        low, high = split_columns(model, lower), split_columns(model, upper)
+        low, high, bounds = split_columns(model, lower), split_columns(model, upper), rounding()
         for key, part in split_columns(model, narrow).items():
-            size = np.maximum(np.abs(low[key]), np.abs(high[key]))
-            norm = size if key == "tau" else np.linalg.norm(size, axis=-1, keepdims=True)
-            axes = tuple(range(1, size.ndim))
-            largest = np.maximum(size.max(axis=axes, keepdims=True, initial=0.0), 1.0)
-            part |= high[key] - low[key] <= np.maximum(RELATIVE_WIDTH * norm, ABSOLUTE_WIDTH * largest)
+            size, bound = np.maximum(np.abs(low[key]), np.abs(high[key])), bounds[key][states]
+            if key != "tau":
+                size, bound = norm(size)[..., None], norm(bound)[..., None]
+            largest = np.maximum(
+                np.abs(high[key]).max(axis=tuple(range(1, size.ndim)), keepdims=True, initial=0.0), 1.0
+            )
+            enough = np.minimum(ABSOLUTE_WIDTH * largest, ROUNDING_WIDTH * bound)
+            part |= high[key] - low[key] <= np.fmax(RELATIVE_WIDTH * size, enough)
     return np.asarray(narrow.all(axis=1))

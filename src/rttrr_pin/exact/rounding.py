@@ -5,11 +5,11 @@ running error bound (Wilkinson; Higham, "Accuracy and Stability of Numerical Alg
 |x - x_true| <= b_x, |y - y_true| <= b_y and u the unit roundoff:
 
     z = fl(x + y):  |z - z_true| <= b_x + b_y + u |z|
-    z = fl(x y):    |z - z_true| <= |x| b_y + |y| b_x + b_x b_y + u |z|
+    z = fl(x y):    |z - z_true| <= |x| b_y + |y| b_x + b_x b_y + u |z| + underflow
 
 The bounds are float64 too. Their own rounding is covered by one factor at the end (`SLACK`): every bound is a sum of
 products of non-negative numbers, so it has a relative error of at most its depth times u, below 1e-11 for any robot
-that fits in memory. Underflow is not covered; it needs numbers below 1e-290.
+that fits in memory. What a product or its bound lose where they underflow is covered by `UNDERFLOW`; sums lose nothing.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from rttrr_pin.core.batch import split_columns
 from rttrr_pin.core.dynamics import dynamics
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load, payloads_of
-from rttrr_pin.core.scalars import SINE_ULPS, SLACK, UNIT_ROUNDOFF, Arithmetic, columns
+from rttrr_pin.core.scalars import SINE_ULPS, SLACK, UNDERFLOW, UNIT_ROUNDOFF, Arithmetic, columns
 from rttrr_pin.core.wrench import RESULTS, LinkWrenches
 
 Real: TypeAlias = Any  # float | Array: what NumPy's stubs cannot combine without casts
@@ -75,7 +75,7 @@ class Bounded:
         if isinstance(other, Bounded):
             value = self.value * other.value
             inherited = _inherited(self, other)
-            return Bounded(value, inherited + UNIT_ROUNDOFF * abs(value))
+            return Bounded(value, inherited + (UNIT_ROUNDOFF * abs(value) + UNDERFLOW))
         if not isinstance(other, PLAIN):
             return NotImplemented
         if other == 0:
@@ -83,7 +83,7 @@ class Bounded:
         if other in (1, -1):
             return self if other == 1 else -self
         value = self.value * other
-        return Bounded(value, self.bound * abs(other) + UNIT_ROUNDOFF * abs(value))
+        return Bounded(value, self.bound * abs(other) + (UNIT_ROUNDOFF * abs(value) + UNDERFLOW))
 
     __rmul__ = __mul__
 

@@ -19,12 +19,13 @@ from typing import Any
 
 import numpy as np
 
-from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.dynamics import joint_states
-from rttrr_pin.core.joints import JointType
+from rttrr_pin.core.algebra import IDENTITY, ZERO, Vector
+from rttrr_pin.core.arrays import Array, norm
+from rttrr_pin.core.dynamics import bodies, joint_states
+from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
-from rttrr_pin.core.scalars import EPS, FLOAT
-from rttrr_pin.core.wrench import LINK_QUANTITIES, LinkWrenches
+from rttrr_pin.core.scalars import EPS, FLOAT, UNDERFLOW
+from rttrr_pin.core.wrench import LINK_QUANTITIES, QUANTITIES, LinkWrenches
 from rttrr_pin.implementations.library import norms
 from rttrr_pin.implementations.protocol import Batch
 
@@ -41,23 +42,24 @@ Carrier = tuple[float, str, int]
 """Weight, quantity (f or n) and link of a vector that a driving force is a component of."""
 
 
-def norm(vectors: Array) -> Array:
-    """The Euclidean norm of the last axis."""
-    lengths: Array = np.linalg.norm(vectors, axis=-1)
-    return lengths
-
-
 def carriers(model: Model) -> list[list[Carrier]]:
     """For each degree of freedom the vectors that its driving force is made of: its own, and those of followers."""
-    parts: dict[int, list[list[Carrier]]] = {
-        i: [[(1.0, "n" if rotates else "f", i)] for rotates in model.joints[i].type.rotations]
-        for i in model.independent
-    }
+    own = [_carried(i, body) for i, body in enumerate(bodies(model, FLOAT))]
+    parts = {i: own[i] for i in model.independent}
     for i, joint in enumerate(model.joints):
         if joint.mimic is not None:
-            weight = abs(joint.mimic.multiplier)
-            parts[joint.mimic.joint][0].append((weight, "n" if joint.type.rotations[0] else "f", i))
+            multiplier = abs(joint.mimic.multiplier)
+            parts[joint.mimic.joint][0] += [(multiplier * weight, key, link) for weight, key, link in own[i][0]]
     return [freedom for i in model.independent for freedom in parts[i]]
+
+
+def _carried(i: int, body: Body) -> list[list[Carrier]]:
+    """For each rate of a joint how much of f and of n of its link is in the driving force, at most."""
+    units = [Vector(*row) for row in np.eye(3).tolist()]
+    along = {"f": [body.type.driving_force(body, unit, ZERO) for unit in units]}
+    along["n"] = [body.type.driving_force(body, ZERO, unit) for unit in units]
+    weights = {key: norm(np.array(x, dtype=float).T) for key, x in along.items()}
+    return [[(float(weights[key][k]), key, i) for key in weights if weights[key][k]] for k in range(body.type.nv)]
 
 
 def of_bounds(bounds: LinkWrenches) -> dict[str, Array]:
@@ -83,12 +85,25 @@ def of_library(
     return {"tau": _of_carriers(batch.model, wide) + HANDOVER * np.abs(own)} | wide
 
 
+def of_other_numbers(batch: Batch, built: Model) -> dict[str, Array]:
+    """How far the true values are from those of a model with other numbers: what the recursion makes of the two.
+
+    Rounding of both is counted, so that this holds for the true values, and to any order in the difference.
+    """
+    sides = (batch.recursion, replace(batch, model=built).recursion)
+    apart = {}
+    for key in QUANTITIES:
+        (x, x_bound), (y, y_bound) = ((getattr(values, key), getattr(bounds, key)) for values, bounds in sides)
+        apart[key] = np.abs(x - y) + x_bound + y_bound
+    return {key: x if key == "tau" else norm(x) for key, x in apart.items()}
+
+
 def default_allowance(batch: Batch) -> dict[str, Array]:
     """The allowance of a program of which nothing is known: eps for all terms, at each level of the tree."""
     model = batch.model
     depth = levels([joint.parent for joint in model.joints]).max(initial=0.0)
     each = OPERATIONS * EPS * (1 + depth)
-    wide = {key: each * size for key, size in sizes(batch).items()}
+    wide = {key: each * size + UNDERFLOW for key, size in sizes(batch).items()}
     own = np.abs(batch.recursion[0].tau_joint)
     return {"tau": _of_carriers(model, wide) + HANDOVER * own} | wide
 
@@ -110,14 +125,16 @@ def sizes(batch: Batch) -> dict[str, Array]:
     model, rows = batch.model, len(batch)
     shape = (rows, len(model.links))
     w, v, w_dot, a, reach = (np.zeros(shape) for _ in range(5))
-    gravity = np.full(rows, float(np.linalg.norm(model.gravity)))
+    gravity = np.full(rows, norm(model.gravity))
     still = np.zeros(rows)
     states = joint_states(model, SIZES, *(list(np.abs(x).T) for x in (batch.q, batch.v, batch.a)))
-    for i, (joint, state) in enumerate(zip(model.joints, states, strict=True)):
+    for i, (joint, body, state) in enumerate(zip(model.joints, bodies(model, SIZES), states, strict=True)):
         p = joint.parent
-        turn, turn_dot = (_length(joint.type, x, True, rows) for x in (state.v, state.a))
-        moved, slide, slide_dot = (_length(joint.type, x, False, rows) for x in (state.q, state.v, state.a))
-        reach[:, i] = float(np.linalg.norm(joint.p)) + moved
+        own = joint.type.motion(replace(body, R=IDENTITY, p=ZERO), state, SIZES.sincos)
+        moved, turn, turn_dot, slide, slide_dot = (
+            _length(x, rows) for x in (own.p, own.w, own.w_dot, own.v, own.v_dot)
+        )
+        reach[:, i] = norm(joint.p) + moved
         w_p, v_p, w_dot_p, a_p = (
             x[:, p] if p >= 0 else start
             for x, start in zip((w, v, w_dot, a), (still, still, still, gravity), strict=True)
@@ -139,10 +156,10 @@ def sizes(batch: Batch) -> dict[str, Array]:
     return {"F": F, "N": N, "f": f, "n": n}
 
 
-def _length(joint: JointType, parts: Sequence[Any], rotates: bool, rows: int) -> Array:
-    """The norm of those coordinates or rates that are angles, or that are not (they come first), (N,)."""
-    own = [x for x, of_angle in zip(parts, joint.rotations, strict=False) if of_angle is rotates]
-    return norm(np.stack(own, axis=-1)) if own else np.zeros(rows)
+def _length(vector: Vector, rows: int) -> Array:
+    """The norm of a vector of columns, or of numbers that are the same in each state, (N,)."""
+    components: list[Any] = [*vector]
+    return norm(np.stack([np.broadcast_to(np.abs(x), rows) for x in components], axis=-1))
 
 
 def add_inwards(parents: Sequence[int], f: Array, n: Array, reach: Array) -> None:

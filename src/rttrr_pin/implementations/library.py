@@ -7,14 +7,18 @@ their forces are summed up by virtual work.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
+from tempfile import TemporaryFile
+from threading import Lock
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.arrays import Array, norm
 from rttrr_pin.core.dynamics import generalised_forces, joint_effects, joint_states
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints.base import JointState
@@ -123,7 +127,7 @@ def product(matrix: Array, vectors: Array) -> Array:
 
 def norms(arrays: Iterable[ArrayLike]) -> Array:
     """The Euclidean norm of each array."""
-    return np.array([np.linalg.norm(x) for x in arrays])
+    return np.array([norm(np.ravel(x)) for x in arrays])
 
 
 def urdf_of(model: Model, program: str) -> str:
@@ -139,34 +143,71 @@ def urdf_of(model: Model, program: str) -> str:
     return model.urdf
 
 
+_CAPTURING = Lock()
+"""Stderr is the whole process's: whoever captures it waits for the one before."""
+
+
+@contextmanager
+def captured_stderr() -> Iterator[list[str]]:
+    """A list that has, once the block is left, the lines that C code wrote to stderr within it."""
+    lines: list[str] = []
+    with _CAPTURING, TemporaryFile() as file:
+        try:
+            kept = os.dup(2)
+        except OSError:  # closed: nothing can be written there
+            yield lines
+            return
+        os.dup2(file.fileno(), 2)
+        try:
+            yield lines
+        finally:
+            os.dup2(kept, 2)
+            os.close(kept)
+            file.seek(0)
+            lines += file.read().decode(errors="replace").splitlines()
+
+
 def differs(what: str, expected: ArrayLike, built: ArrayLike, scale: float = 0.0) -> Iterator[str]:
     """A line, if what a library built is apart from what is expected by more than rounding.
 
     `scale` is that of what was rounded on the way, where it is larger than the numbers themselves.
     """
     x, y = np.asarray(expected, dtype=float), np.asarray(built, dtype=float)
-    size = max(float(np.linalg.norm(x)), scale)
-    if x.shape != y.shape or not np.linalg.norm(x - y) <= TOLERANCE * size:
-        shown_y, shown_x = (np.array2string(z, precision=17, separator=", ").replace("\n", "") for z in (y, x))
-        yield f"{what}: {shown_y}, the file says {shown_x}"
+    if x.shape != y.shape or not norm(np.ravel(x - y)) <= TOLERANCE * max(float(norm(np.ravel(x))), scale):
+        yield f"{what}: {shown(y)}, the file says {shown(x)}"
 
 
-def placement_differences(joint: Joint, expected: tuple[Array, Array], R: Array, p: Array) -> Iterator[str]:
-    """What of a joint's placement R, p [m] is not as expected."""
+def shown(x: Array) -> str:
+    """Numbers with all their digits, on one line."""
+    return np.array2string(x, precision=17, separator=", ").replace("\n", "")
+
+
+def placement_differences(
+    joint: Joint, expected: tuple[Array, Array], R: Array, p: Array, scale: float = 0.0
+) -> Iterator[str]:
+    """What of a joint's placement R, p [m] is not as expected; `scale` is the sum of the lengths that p adds up."""
     yield from differs(f"joint {joint.name!r} placement R", expected[0], R, 1.0)
-    yield from differs(f"joint {joint.name!r} placement p", expected[1], p)
+    yield from differs(f"joint {joint.name!r} placement p", expected[1], p, scale)
+
+
+Inertia = tuple[float, Array, Array]
+"""Mass [kg], centre of mass [m], and tensor about it [kg m^2]."""
+
+Scales = tuple[float, float, float]
+"""Of what an inertia's three parts were added up from."""
 
 
 def inertia_differences(
-    link: Link, expected: tuple[float, Array, Array], built: tuple[float, Array, Array], scale: float = 0.0
+    link: Link, expected: Inertia, built: Inertia, scales: Scales = (0.0, 0.0, 0.0)
 ) -> Iterator[str]:
-    """What of mass, centre of mass and tensor about it is not as expected; `scale` is that of the tensor."""
+    """What of mass, centre of mass and tensor about it is not as expected."""
     here = f"link {link.name!r}"
     (mass, com, tensor), (built_mass, built_com, built_tensor) = expected, built
-    yield from differs(f"{here} mass", mass, built_mass)
+    of_mass, of_com, of_tensor = scales
+    yield from differs(f"{here} mass", mass, built_mass, of_mass)
     if mass:
-        yield from differs(f"{here} centre of mass", com, built_com)
-    yield from differs(f"{here} inertia", tensor, built_tensor, scale)
+        yield from differs(f"{here} centre of mass", com, built_com, of_com)
+    yield from differs(f"{here} inertia", tensor, built_tensor, of_tensor)
 
 
 def limit_differences(joint: Joint, built: Mapping[str, float]) -> Iterator[str]:

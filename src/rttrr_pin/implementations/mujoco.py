@@ -30,15 +30,15 @@ from typing import Any, NamedTuple
 import mujoco
 import numpy as np
 
-from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.arrays import Array, norm
 from rttrr_pin.core.joints import FLOATING, PLANAR
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import QUANTITIES
-from rttrr_pin.implementations.allowance import add_inwards, levels, norm, of_library
+from rttrr_pin.implementations.allowance import add_inwards, levels, of_library
 from rttrr_pin.implementations.library import LibraryJoint, Motion, driving_forces, own_states, product
-from rttrr_pin.implementations.mujoco_model import PREFIX, build, mujoco_joints, rotation_of
+from rttrr_pin.implementations.mujoco_model import PREFIX, build, mujoco_joints, own_refusal, rotation_of
 from rttrr_pin.implementations.protocol import Batch, Evaluation
 
 OPERATIONS = 4
@@ -64,6 +64,9 @@ class Mujoco:
         """
         self.model = model
         self.compiled = build(model)
+        refusal = own_refusal(model.urdf)
+        note = f"MuJoCo itself refuses this file; placeholders were compiled. It says: {refusal}"
+        self.notes = (note,) if refusal else ()
         self.joints = mujoco_joints(model, self.compiled)
         self.bodies = [self.compiled.body(PREFIX + name).id for name in model.link_names]
         self.axes = np.array([rotation_of(self.compiled.body_iquat[body]) for body in self.bodies]).reshape(-1, 3, 3)
@@ -205,8 +208,8 @@ def _rounding(
     parents = [-1, *compiled.body_parentid[1:]]
     w, v, w_dot, v_dot, rho = _outwards(compiled, motion, record)
     mass = np.abs(compiled.body_mass)
-    arm = rho + np.linalg.norm(compiled.body_ipos, axis=1)
-    tensor = np.linalg.norm(compiled.body_inertia, axis=1)
+    arm = rho + norm(compiled.body_ipos)
+    tensor = norm(compiled.body_inertia)
     turning = w_dot + w**2
     force = mass * (v_dot + w * v + arm * turning)
     own_moment = tensor * turning
@@ -231,7 +234,7 @@ def _outwards(compiled: Any, motion: Motion, record: _Record) -> Array:
     """
     sizes = np.zeros((5, len(motion.q), compiled.nbody))
     w, v, w_dot, v_dot, rho = sizes
-    v_dot[:, 0] = np.linalg.norm(compiled.opt.gravity)
+    v_dot[:, 0] = norm(compiled.opt.gravity)
     rho[:, 0] = norm(record.C)
     rates, accelerations = (_by_body(compiled, x) for x in (motion.v, motion.a))
     for body in range(1, compiled.nbody):

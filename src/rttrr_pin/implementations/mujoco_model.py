@@ -16,6 +16,7 @@ compared with the file as it read them. What its compiler would do to them next 
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any
@@ -24,7 +25,7 @@ import mujoco
 import numpy as np
 from lxml import etree
 
-from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.arrays import Array, norm
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints import CONTINUOUS, FIXED, FLOATING, PLANAR, PRISMATIC, REVOLUTE
 from rttrr_pin.core.model import Link, Model
@@ -89,6 +90,24 @@ def build(model: Model) -> Any:
     return compiled
 
 
+def own_refusal(urdf: str) -> str:
+    """Why MuJoCo refuses a text from whose compilation nothing is kept away; empty where it takes it.
+
+    Meshes, which need not be there, are spheres in this: a link without <inertial> gets its mass from its shape.
+    """
+    root = _parsed(urdf)
+    for element in list(root.iter("visual", "material")):  # MuJoCo leaves them out
+        element.getparent().remove(element)
+    for mesh in list(root.iter("mesh")):
+        mesh.getparent().replace(mesh, etree.Element("sphere", radius="1"))
+    with without_log():
+        try:
+            mujoco.MjModel.from_xml_string(etree.tostring(root, encoding="unicode"))
+        except ValueError as error:
+            return " ".join(str(error).split())
+    return ""
+
+
 def mujoco_joints(model: Model, compiled: Any) -> list[library.LibraryJoint]:
     """The moving joints, in our order."""
 
@@ -110,7 +129,7 @@ def rotation_of(quaternion: Any) -> Array:
 def unit(x: Any) -> Array:
     """Divided by its length."""
     vector = np.array(x, dtype=float)
-    divided: Array = vector / np.linalg.norm(vector)
+    divided: Array = vector / norm(vector)
     return divided
 
 
@@ -136,18 +155,26 @@ def _write(compiled: Any, body: int, mass: float, com: Array, tensor: Array) -> 
 
 @contextmanager
 def without_log() -> Iterator[None]:
-    """MuJoCo's warnings (two limits are equal, ...) go to a file in the current folder unless someone takes them."""
+    """MuJoCo's warnings (two limits are equal, ...) go to a file in the current folder unless someone takes them.
+
+    That its compiler finds inertias singular is no news of placeholders, and of a file for `inspect` to say.
+    """
     before = mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(lambda message: None)
     try:
-        yield
+        with warnings.catch_warnings(action="ignore", category=UserWarning):
+            yield
     finally:
         mujoco.set_mju_user_warning(before)
 
 
+def _parsed(urdf: str) -> Any:
+    return etree.fromstring(urdf.encode(), etree.XMLParser(encoding="utf-8"))
+
+
 def _bare(urdf: str) -> str:
     """The text without what dynamics do not need, and with the names of links and joints marked."""
-    root = etree.fromstring(urdf.encode(), etree.XMLParser(encoding="utf-8"))
+    root = _parsed(urdf)
     for element in list(root.iter(*DROPPED)):
         element.getparent().remove(element)
     for path, key, before, behind in MARKED:

@@ -25,21 +25,38 @@ body, whichever link of it they hang on, and none if the body is the universe: i
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
 
-from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.arrays import Array, norm
 from rttrr_pin.core.joints import CONTINUOUS, PLANAR
 from rttrr_pin.core.model import ROOT_JOINT, UNIVERSE, Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.errors import ImplementationError, ModelMismatchError
-from rttrr_pin.implementations.allowance import add_inwards, norm, of_library
-from rttrr_pin.implementations.library import LibraryJoint, Motion, driving_forces, norms, own_states, product, urdf_of
-from rttrr_pin.implementations.pinocchio_model import PinLink, differences, pin_joints, pin_links
+from rttrr_pin.implementations.allowance import add_inwards, of_library, of_other_numbers
+from rttrr_pin.implementations.library import (
+    LibraryJoint,
+    Motion,
+    driving_forces,
+    norms,
+    own_states,
+    product,
+    shown,
+    urdf_of,
+)
+from rttrr_pin.implementations.pinocchio_model import (
+    PinLink,
+    built_model,
+    differences,
+    pin_joints,
+    pin_links,
+    snapped_axes,
+)
 from rttrr_pin.implementations.protocol import Batch, Evaluation
 
 OPERATIONS = 4
@@ -69,13 +86,22 @@ class Pinocchio:
             )
         try:
             root = (pin.JointModelFreeFlyer(),) if model.floating else ()
-            self.pin_model = pin.buildModelFromXML(urdf, *root)
-        except (ValueError, RuntimeError) as error:
-            raise ImplementationError(f"Pinocchio refuses the URDF of {model.name!r}: {str(error).strip()}") from error
+            self.pin_model, said = built_model(urdf, *root)
+        except ImplementationError as error:
+            raise ImplementationError(f"Pinocchio refuses the URDF of {model.name!r}: {error}") from error
         if lines := differences(model, self.pin_model):
-            raise ModelMismatchError("Pinocchio", lines)
+            raise ModelMismatchError("Pinocchio", lines, said)
         self.pin_model.gravity.linear = np.array(model.gravity)
         self.model = model
+        axes = snapped_axes(model, self.pin_model)
+        joints = (replace(joint, axis=axes.get(i, joint.axis)) for i, joint in enumerate(model.joints))
+        self.built = replace(model, joints=tuple(joints)) if axes else model
+        snapped = (
+            f"Pinocchio takes the axis of joint {model.joints[i].name!r} as {shown(axis)}, the file says "
+            f"{shown(model.joints[i].axis)}: what that changes is allowed for"
+            for i, axis in axes.items()
+        )
+        self.notes = (*snapped, *([said] if said else ()))
         self.joints = pin_joints(model, self.pin_model)
         for joint in self.joints:
             self.pin_model.armature[joint.v] = joint.joint.effects.armature
@@ -104,7 +130,11 @@ class Pinocchio:
             if not hanging and not any(self.links[k].massive for k in links):
                 cancelling["f"][:, i] = cancelling["n"][:, i] = 0.0  # nothing but loads acts there
         cancelling["n"] += OPERATIONS * EPS * moments
-        return Evaluation(values, of_library(batch, values, tau_joint, cancelling), tau_joint)
+        allowance = of_library(batch, values, tau_joint, cancelling)
+        if self.built is not self.model:
+            changed = of_other_numbers(batch, self.built)
+            allowance = {key: x + changed[key] for key, x in allowance.items()}
+        return Evaluation(values, allowance, tau_joint)
 
     def _in_link_axes(self, loads: Sequence[Load], q: Array) -> list[Load]:
         """The loads with one force and one moment for each state, in the axes of their links."""
@@ -186,7 +216,7 @@ class Pinocchio:
         for k in links:
             link = self.links[k]
             at_body = link.to_joint(F[:, k], N[:, k] + np.cross(link.com, F[:, k]))
-            yield link.arm + float(np.linalg.norm(link.com)), F[:, k], at_body
+            yield link.arm + float(norm(link.com)), F[:, k], at_body
         for joint in hanging:
             placement = record.hanging[:, self._hanging[joint]]
             R, p = np.swapaxes(placement[:, :3], -1, -2), placement[:, 3]
@@ -206,7 +236,7 @@ class Pinocchio:
 
     def _reach(self, motion: Motion) -> Array:
         """At most how far each joint's origin is from that of the joint further in, (N, njoints) [m]."""
-        out = np.tile([np.linalg.norm(x.translation) for x in self.pin_model.jointPlacements], (len(motion.q), 1))
+        out = np.tile(norms(x.translation for x in self.pin_model.jointPlacements), (len(motion.q), 1))
         for joint in self.joints:
             lengths = sum(own.unit == "m" for own in joint.joint.type.coordinates)  # they come first
             out[:, self.pin_model.getJointId(joint.joint.name)] += norm(motion.q[:, joint.q][:, :lengths])
@@ -239,8 +269,8 @@ def _rounding(pin_model: pin.Model, links: Sequence[PinLink], spatial: Array, re
     Sizes add up like the terms: outwards for velocities and accelerations, inwards for forces and moments. `reach` is
     at most how far a joint's origin is from that of the joint further in, (N, njoints) [m].
     """
-    v, w = (np.linalg.norm(x, axis=-1) for x in np.split(spatial[:, 1], 2, axis=-1))
-    v_dot, w_dot = (np.linalg.norm(x, axis=-1) for x in np.split(spatial[:, 2], 2, axis=-1))
+    v, w = (norm(x) for x in np.split(spatial[:, 1], 2, axis=-1))
+    v_dot, w_dot = (norm(x) for x in np.split(spatial[:, 2], 2, axis=-1))
     parents = [int(parent) for parent in pin_model.parents]
     turning = w_dot + w**2
     acceleration = v_dot + w * v

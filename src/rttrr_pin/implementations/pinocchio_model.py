@@ -2,20 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
 
 from rttrr_pin.core.algebra import Vector
-from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.arrays import Array, norm
 from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints import FLOATING
 from rttrr_pin.core.model import Link, Model
+from rttrr_pin.errors import ImplementationError
 from rttrr_pin.implementations import library
+from rttrr_pin.implementations.library import norms
+
+SHOWN = 4
+"""Messages of urdfdom that are repeated in full."""
+
+SNAPPED = 1e-12
+"""Pinocchio takes an axis so near to x, y or z as that (`isApprox` of Eigen); -x, -y and -z are axes like any other."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -43,7 +51,7 @@ class PinLink:
     @property
     def arm(self) -> float:
         """The distance of its origin from the joint's [m]."""
-        return float(np.linalg.norm(self.p))
+        return float(norm(self.p))
 
     @property
     def massive(self) -> bool:
@@ -60,6 +68,31 @@ class PinLink:
         f, n = force[:, :3], force[:, 3:]
         n = n - np.cross(self.p, f)
         return np.concatenate([library.product(self.R.T, f), library.product(self.R.T, n)], axis=1)
+
+
+def built_model(urdf: str, *root: Any, **options: Any) -> tuple[Any, str]:
+    """What Pinocchio builds from a text, and what urdfdom, its reader, printed meanwhile, as a sentence.
+
+    Raises:
+        ImplementationError: Pinocchio refuses the text; with that sentence.
+    """
+    said: list[str] = []
+    try:
+        with library.captured_stderr() as said:
+            pin_model = pin.buildModelFromXML(urdf, *root, **options)
+    except (ValueError, RuntimeError) as error:
+        raise ImplementationError("; ".join(filter(None, [str(error).strip(), _printed(said)]))) from error
+    return pin_model, _printed(said)
+
+
+def _printed(lines: Sequence[str]) -> str:
+    """How many messages urdfdom printed, and the first of them, without the lines of its own source; empty if none."""
+    messages = [line.partition(":")[2].strip() for line in lines if line.startswith(("Error:", "Warning:"))]
+    if not messages:
+        return ""
+    number = "1 message" if len(messages) == 1 else f"{len(messages)} messages"
+    more = "; ..." if len(messages) > SHOWN else ""
+    return f"urdfdom, which reads the file for Pinocchio, printed {number}: {'; '.join(messages[:SHOWN])}{more}"
 
 
 def pin_joints(model: Model, pin_model: Any) -> list[library.LibraryJoint]:
@@ -109,11 +142,13 @@ def differences(model: Model, pin_model: Any) -> list[str]:
 
 def _joint_differences(model: Model, pin_model: Any, data: Any, i: int) -> Iterator[str]:
     """Placement, axis and limits of a joint; mass, centre and tensor of what it carries."""
-    joint, link, at_link = model.joints[i], model.links[i], (i, np.eye(3), np.zeros(3))
-    R, p, ancestor = _placement_on_moving(model, i)
+    joint, link, at_link = model.joints[i], model.links[i], _Placed(i, np.eye(3), np.zeros(3), 0.0)
+    placed, ancestor = _placement_on_moving(model, i)
+    expected = (placed.R, placed.p)
     if not joint.nv:
         frame = pin_model.frames[pin_model.getFrameId(joint.name, pin.FrameType.FIXED_JOINT)]
-        yield from library.placement_differences(joint, (R, p), frame.placement.rotation, frame.placement.translation)
+        M = frame.placement
+        yield from library.placement_differences(joint, expected, M.rotation, M.translation, placed.length)
         yield from _inertia_differences(link, _inertia(model, [at_link]), frame.inertia)
         return
     number = pin_model.getJointId(joint.name)
@@ -121,12 +156,13 @@ def _joint_differences(model: Model, pin_model: Any, data: Any, i: int) -> Itera
     if pin_model.parents[number] != parent:
         hanging_on = pin_model.names[pin_model.parents[number]]
         yield f"joint {joint.name!r}: hangs on {hanging_on!r}, not where the file has it"
-    placement, built = pin_model.jointPlacements[number], pin_model.joints[number]
-    yield from library.placement_differences(joint, (R, p), placement.rotation, placement.translation)
-    yield from library.differs(f"joint {joint.name!r} axis", _subspace(joint), data.joints[number].S, 1.0)
+    M, built = pin_model.jointPlacements[number], pin_model.joints[number]
+    yield from library.placement_differences(joint, expected, M.rotation, M.translation, placed.length)
+    if _snapped_axis(joint, data.joints[number].S) is None:
+        yield from library.differs(f"joint {joint.name!r} axis", _subspace(joint), data.joints[number].S, 1.0)
     if joint.type.has_axis:
         yield from library.limit_differences(joint, _limits(pin_model, built.idx_q, built.idx_v))
-    merged = [at_link, *((k, *_placement_on_moving(model, k)[:2]) for k in _merged(model, i))]
+    merged = [at_link, *(_placement_on_moving(model, k)[0] for k in _merged(model, i))]
     yield from _inertia_differences(link, _inertia(model, merged), pin_model.inertias[number])
 
 
@@ -141,24 +177,42 @@ def _limits(pin_model: Any, q: int, v: int) -> dict[str, float]:
     }
 
 
-def _inertia_differences(link: Link, expected: tuple[float, Array, Array], built: Any) -> Iterator[str]:
-    mass, com, _ = expected
-    scale = mass * float(com @ com)  # what is merged was moved to the common centre of mass
-    yield from library.inertia_differences(link, expected, (built.mass, built.lever, built.inertia), scale)
+def _inertia_differences(link: Link, expected: tuple[library.Inertia, library.Scales], built: Any) -> Iterator[str]:
+    inertia, scales = expected
+    yield from library.inertia_differences(link, inertia, (built.mass, built.lever, built.inertia), scales)
 
 
 def _mimic_differences(model: Model) -> Iterator[str]:
     """Multiplier and offset of followers, where Pinocchio can build them: not if the followed joint sorts later."""
     joints = library.followers(model)
+    if not joints:
+        return
     try:
-        pin_model: Any = pin.buildModelFromXML(model.urdf, mimic=True) if joints else None
-    except (ValueError, RuntimeError):
+        pin_model, _ = built_model(model.urdf, mimic=True)
+    except ImplementationError:
         return
     for joint in joints:
         number = pin_model.getJointId(joint.name)  # njoints for one that it did not build
         if number < pin_model.njoints and pin_model.joints[number].shortname() == "JointModelMimic":
             built = pin_model.joints[number].extract()
             yield from library.mimic_differences(joint, built.scaling, built.offset)
+
+
+def snapped_axes(model: Model, pin_model: Any) -> dict[int, Array]:
+    """By index of its joint, each axis that Pinocchio took as x, y or z though it lies apart by more than rounding."""
+    data = pin_model.createData()
+    moving = {i: data.joints[pin_model.getJointId(joint.name)].S for i, joint in enumerate(model.joints) if joint.nv}
+    axes = {i: _snapped_axis(model.joints[i], S) for i, S in moving.items()}
+    return {i: axis for i, axis in axes.items() if axis is not None}
+
+
+def _snapped_axis(joint: Joint, S: Any) -> Array | None:
+    """x, y or z, where that is what Pinocchio took for an axis that is not it; S is what it built."""
+    if not joint.type.has_axis:
+        return None
+    axis = np.ravel(S)[3:] if joint.type.rotations[0] else np.ravel(S)[:3]
+    snapped = np.count_nonzero(axis) == 1 and axis.max() == 1.0 and (axis != joint.axis).any()
+    return axis if snapped and norm(axis - joint.axis) <= SNAPPED else None
 
 
 def _subspace(joint: Joint) -> Array:
@@ -169,29 +223,42 @@ def _subspace(joint: Joint) -> Array:
     return S.squeeze()
 
 
-def _placement_on_moving(model: Model, i: int) -> tuple[Array, Array, int]:
-    """R, p of joint i on the nearest link further in that a moving joint carries, and that link's index (-1: root)."""
+class _Placed(NamedTuple):
+    """Where link i is on the link that carries it: R, p [m], and the lengths that p adds up, in which it may cancel."""
+
+    link: int
+    R: Array
+    p: Array
+    length: float
+
+
+def _placement_on_moving(model: Model, i: int) -> tuple[_Placed, int]:
+    """Link i on the nearest link further in that a moving joint carries, and that link's index (-1: root)."""
     joint = model.joints[i]
-    R, p, k = joint.R, joint.p, joint.parent
+    R, p, length, k = joint.R, joint.p, float(norm(joint.p)), joint.parent
     while k >= 0 and model.joints[k].nv == 0:
         R, p = model.joints[k].R @ R, model.joints[k].p + model.joints[k].R @ p
+        length += float(norm(model.joints[k].p))
         k = model.joints[k].parent
-    return R, p, k
+    return _Placed(i, R, p, length), k
 
 
 def _merged(model: Model, i: int) -> list[int]:
     """The links that fixed joints hold to link i, which a moving joint carries."""
     fixed = (k for k, joint in enumerate(model.joints) if joint.nv == 0)
-    return [k for k in fixed if _placement_on_moving(model, k)[2] == i]
+    return [k for k in fixed if _placement_on_moving(model, k)[1] == i]
 
 
-def _inertia(model: Model, parts: list[tuple[int, Array, Array]]) -> tuple[float, Array, Array]:
-    """Mass, centre of mass and tensor about it of links at placements R, p (parallel axis theorem)."""
-    masses = np.array([model.links[k].mass for k, _, _ in parts])
-    centres = np.array([p + R @ model.links[k].com for k, R, p in parts])
-    mass = float(masses.sum())
+def _inertia(model: Model, parts: list[_Placed]) -> tuple[library.Inertia, library.Scales]:
+    """Mass, centre of mass and tensor about it of links together (parallel axis theorem), and what each adds up."""
+    links = [model.links[part.link] for part in parts]
+    masses = np.array([link.mass for link in links])
+    centres = np.array([part.p + part.R @ link.com for part, link in zip(parts, links, strict=True)])
+    mass, sizes = float(masses.sum()), np.abs(masses)
     com = masses @ centres / mass if mass else centres[0]
     tensor = np.zeros((3, 3))
-    for (k, R, _), m, c in zip(parts, masses, centres, strict=True):
-        tensor += R @ model.links[k].inertia @ R.T + m * point_tensor(Vector.of(c - com)).array
-    return mass, com, tensor
+    for part, link, c in zip(parts, links, centres, strict=True):
+        tensor += part.R @ link.inertia @ part.R.T + link.mass * point_tensor(Vector.of(c - com)).array
+    lengths = np.array([part.length for part in parts]) + norms(link.com for link in links)
+    moments = sizes @ lengths**2 + norms(link.inertia for link in links).sum()
+    return (mass, com, tensor), (sizes.sum(), sizes @ lengths / abs(mass) if mass else 0.0, moments)

@@ -56,7 +56,7 @@ class Program:
         name: the command.
         quantities: those that it replied with when it was tried.
         digits: the significant digits that it is judged at; None where it prints all that float64 has.
-        note: the same as a sentence; empty where all digits are there.
+        notes: the same as a sentence; none where all digits are there.
     """
 
     version = ""
@@ -85,7 +85,7 @@ class Program:
         texts = self._replies(trial)
         self.quantities = tuple(key for key in QUANTITIES if key in texts[0])
         self._digits = {key: Digits.of(text for reply in texts for text in reply[key]) for key in self.quantities}
-        self.digits, self.note = judged_at(self.name, self._digits.values(), "it prints them")
+        self.digits, self.notes = judged_at(self.name, self._digits.values(), "it prints them")
 
     def evaluate(self, batch: Batch) -> Evaluation:
         """What the program replies, state by state.

@@ -104,6 +104,8 @@ class Implementation(Protocol):
         name: what it is called in reports.
         version: of the program or library; empty where it has none.
         quantities: which of tau, F, N, f, n it gives, in this order.
+
+    One that also has `notes`, a tuple of sentences, has them shown beside its verdict.
     """
 
     @property

@@ -12,12 +12,12 @@ from typing import Any, TypeAlias
 
 import numpy as np
 
-from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.arrays import Array, norm
 from rttrr_pin.core.inputs import coordinates
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.errors import ImplementationError, InputError, RttrrError, UnknownNameError, shortened
-from rttrr_pin.implementations.allowance import norm, of_printed
+from rttrr_pin.implementations.allowance import of_printed
 from rttrr_pin.implementations.protocol import Batch, Evaluation, kernel_of, shape_of
 from rttrr_pin.implementations.text_results import (
     Digits,
@@ -49,7 +49,7 @@ class Table:
         name: the file's.
         quantities: those that it has columns of.
         digits: the significant digits that it is judged at; None where it was printed to all that float64 has.
-        note: the same as a sentence; empty where all digits are there.
+        notes: the same as a sentence; none where all digits are there.
     """
 
     version = ""
@@ -68,7 +68,7 @@ class Table:
         self.quantities = tuple(key for key in QUANTITIES if key in names)
         parsed = {key: _numbers(columns, names[key], lines, self.name) for key in names}
         printed = [parsed[key][1] for key in self.quantities]
-        self.digits, self.note = judged_at(self.name, printed, "it was printed")
+        self.digits, self.notes = judged_at(self.name, printed, "it was printed")
         self._halves = {key: digits.half_units(x) for key, (x, digits) in parsed.items()}
         self._states_rounded = self.digits is not None and any(_alike(parsed[key][1], printed) for key in STATE)
         self._values = {key: x for key, (x, _) in parsed.items()}

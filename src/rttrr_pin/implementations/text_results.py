@@ -77,10 +77,10 @@ class Digits:
         return halves
 
 
-def judged_at(name: str, digits: Iterable[Digits], how: str) -> tuple[int | None, str]:
-    """The significant digits that results are judged at, also as a sentence; None and "" where nothing was cut off."""
+def judged_at(name: str, digits: Iterable[Digits], how: str) -> tuple[int | None, tuple[str, ...]]:
+    """The significant digits that results are judged at, also as a note; None and none where nothing was cut off."""
     fewest = min((own.significant for own in digits if not own.full), default=None)
-    return fewest, "" if fewest is None else f"{name} is judged at {fewest} digits, as {how}"
+    return fewest, () if fewest is None else (f"{name} is judged at {fewest} digits, as {how}",)
 
 
 def columns_of(model: Model) -> dict[str, Columns]:

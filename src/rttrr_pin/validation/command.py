@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import shlex
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -11,6 +13,8 @@ import click
 from rttrr_pin.errors import InputError
 from rttrr_pin.reporting.options import flag, outcome, robot, seed, xacro_arguments
 from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json
+from rttrr_pin.robot import Robot
+from rttrr_pin.urdf.document import UrdfDocument
 from rttrr_pin.urdf.sources import several
 from rttrr_pin.validation.options import RunOptions, conditions, drawn, payload, programs
 
@@ -46,6 +50,7 @@ def validate(states: int, json: str | None, quiet: bool, full: bool, **run: Any)
         result = comparing.validate(
             loaded, n_states=states, sampling=options.sampling, progress=advance, **options.chosen()
         )
+    result = replace(result, notes=(*result.notes, *_faults(loaded, options.robot)))
     write_json(json, result.to_dict)
     console = Output(quiet=quiet or json == "-", soft_wrap=False)
     show_validation(result, console, f"{options.command('state')} --index", full)
@@ -97,6 +102,19 @@ def search(evaluations: int, json: str | None, quiet: bool, **run: Any) -> int:
     write_json(json, worst.to_dict)
     show_search(worst, Output(quiet=quiet or json == "-", soft_wrap=False))
     return AGREE if worst.passed else DISAGREE
+
+
+def _faults(robot: Robot, source: str) -> list[str]:
+    """That both programs compute what the file says does not mean that the file says what a body can be."""
+    document = robot.model.document
+    if not isinstance(document, UrdfDocument):
+        return []
+    from rttrr_pin.inspection.checks import Severity
+    from rttrr_pin.inspection.run import inspect_document
+
+    errors = inspect_document(document).counts[Severity.ERROR]
+    found = "1 error" if errors == 1 else f"{errors} errors"
+    return [f"inspect finds {found} in this file: {shlex.join(['rttrr-pin', 'inspect', source])}"] if errors else []
 
 
 def _validate_several(

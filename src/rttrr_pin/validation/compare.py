@@ -11,16 +11,17 @@ no tolerance to choose.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
-from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.arrays import Array, norm
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import LINK_QUANTITIES, QUANTITIES
 from rttrr_pin.implementations import Batch, Evaluation, default_allowance
-from rttrr_pin.implementations.allowance import carriers, norm
+from rttrr_pin.implementations.allowance import carriers
 
 
 @dataclass(slots=True)
@@ -80,8 +81,9 @@ class Row:
         at: name of the link (of the joint for tau).
         unit: of the quantity.
         absolute: largest |subject - reference| in that unit.
-        relative: largest |subject - reference| / |reference| in eps. For tau the divisor is the norm of the joint's n
-            (of its f, where it slides), of which tau is one component.
+        relative: largest |subject - reference| / |reference| in eps, of the states in which |reference| is more than
+            the tolerance: beside a true zero, it would be rounding divided by rounding. For tau the divisor is the norm
+            of the joint's n (of its f, where it slides), of which tau is one component.
         of_tolerance: largest error / tolerance.
         failures: states beyond the tolerance.
     """
@@ -120,6 +122,11 @@ class Difference:
         return ratio(self.error, self.size * EPS)
 
     @property
+    def known(self) -> NDArray[np.bool_]:
+        """Whether |reference| is more than what rounding can explain, so that the relative error means anything."""
+        return self.size > self.tolerance
+
+    @property
     def of_tolerance(self) -> Array:
         """Error / tolerance; 0 where they are equal."""
         return ratio(self.error, self.tolerance)
@@ -131,7 +138,7 @@ class Comparison:
     Attributes:
         quantities: those that both programs give.
         rows: of each quantity at each link or joint.
-        whole: by quantity, the largest relative error in eps, in the norm over all links or joints.
+        whole: by quantity, the largest relative error in eps, in the norm over all links or joints; as `Row.relative`.
     """
 
     def __init__(self, model: Model, quantities: Sequence[str] = QUANTITIES) -> None:
@@ -144,16 +151,23 @@ class Comparison:
     def add(self, batch: Batch, subject: Evaluation, reference: Evaluation) -> Array:
         """Take in the results of consecutive states; return the largest error / tolerance of each state, (N,)."""
         first, ratios = batch.first, np.zeros(len(batch))
+        tolerances: dict[str, list[Array]] = {quantity: [] for quantity in self.whole}
         for row, difference in zip(self.rows, self.differences(batch, subject, reference), strict=True):
             of_tolerance = difference.of_tolerance
             row.absolute.see(difference.error, first)
-            row.relative.see(difference.relative, first)
+            row.relative.see(np.where(difference.known, difference.relative, 0.0), first)
             row.of_tolerance.see(of_tolerance, first)
             row.failures += int((of_tolerance > 1.0).sum())
             np.maximum(ratios, of_tolerance, out=ratios)
+            tolerances[row.quantity].append(difference.tolerance)
         for quantity, worst in self.whole.items():
             x, y = (side.values[quantity].reshape(len(batch), -1) for side in (subject, reference))
-            worst.see(ratio(_finite_or(norm(x - y), np.inf), EPS * norm(y)), first)
+            whole = Difference(
+                _finite_or(norm(x - y), np.inf),
+                norm(y),
+                norm(np.reshape(tolerances[quantity], (-1, len(batch))).T),
+            )
+            worst.see(np.where(whole.known, whole.relative, 0.0), first)
         return ratios
 
     def differences(self, batch: Batch, subject: Evaluation, reference: Evaluation) -> Iterator[Difference]:
@@ -179,9 +193,14 @@ class Comparison:
         return sizes
 
 
+def with_allowance(batch: Batch, evaluation: Evaluation) -> Evaluation:
+    """The result with what rounding may make of it, by default of a program of which nothing is known."""
+    return evaluation if evaluation.allowance is not None else replace(evaluation, allowance=default_allowance(batch))
+
+
 def _allowance(batch: Batch, evaluation: Evaluation) -> Mapping[str, Array]:
     """What rounding may make of a result; what is not finite excuses nothing."""
-    known = default_allowance(batch) if evaluation.allowance is None else evaluation.allowance
+    known = with_allowance(batch, evaluation).allowance or {}
     return {key: _finite_or(x, 0.0) for key, x in known.items()}
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.core.model import Model
 from rttrr_pin.errors import InputError
 from rttrr_pin.exact.adjudication import Adjudication, Assessment, Deviation, in_order, nearest
@@ -16,12 +16,9 @@ from rttrr_pin.exact.parameters import Parameters, exact_parameters
 from rttrr_pin.implementations import Batch, Evaluation, Implementation, make_implementation, make_references
 from rttrr_pin.implementations.registry import Source
 from rttrr_pin.robot import Robot
-from rttrr_pin.validation.compare import Comparison, Difference, Ranking
+from rttrr_pin.validation.compare import Comparison, Difference, Ranking, with_allowance
 from rttrr_pin.validation.sampling import Payload, Sampler
 from rttrr_pin.validation.states import States, model_of
-
-HUGE = 1e140
-"""Numbers whose squares, times anything that occurs, stay within float64."""
 
 References = Source | list[Source] | tuple[Source, ...]
 """One reference or several."""
@@ -70,8 +67,15 @@ class Run:
                     f"{', '.join(other.quantities)}: there is nothing to compare"
                     f"{'' if model.nv else ', since no joint moves'}"
                 )
+        _check_inertia(model, sampler)
         states = States(sampler, programs, compiled=any(program.name == "kernel" for program in programs))
         return cls(states, programs, tuple(comparisons))
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What a reader of the verdict must know: of how the robot was read, and of each program."""
+        of_programs = (note for program in self.programs for note in getattr(program, "notes", ()))
+        return (*(note.text for note in self.states.sampler.model.notes), *of_programs)
 
     @property
     def subject(self) -> Implementation:
@@ -86,8 +90,9 @@ class Run:
     @QUIET
     def evaluate(self, batch: Batch) -> list[Evaluation]:
         """What each program makes of a batch, the subject first."""
-        results = [program.evaluate(batch) for program in self.programs]
-        _check_size(batch, results[0])
+        results = [with_allowance(batch, program.evaluate(batch)) for program in self.programs]
+        for program, result in zip(self.programs, results, strict=True):
+            _check_overflow(batch, program, result)
         return results
 
     @QUIET
@@ -132,7 +137,9 @@ def _assessment(batch: Batch, enclosures: Enclosures, name: str, evaluation: Eva
     truth = Evaluation(true, {key: np.zeros(x.shape[:2]) for key, x in true.items()}, evaluation.tau_joint)
     comparison = Comparison(batch.model, tuple(true))
     deviations = [
-        Deviation(row.quantity, row.at, float(one.relative[0]), float(one.of_tolerance[0]))
+        Deviation(
+            row.quantity, row.at, float(one.relative[0]), float(one.of_tolerance[0]), float(one.error[0]), row.unit
+        )
         for row, one in zip(comparison.rows, comparison.differences(batch, evaluation, truth), strict=True)
     ]
     return Assessment(name, in_order(batch.model, deviations))
@@ -147,25 +154,20 @@ def true_parameters(model: Model) -> Parameters:
     return "read"
 
 
-def _check_size(batch: Batch, subject: Evaluation) -> None:
-    """Norms square what they are of: numbers whose squares overflow cannot be compared.
+def _check_inertia(model: Model, sampler: Sampler) -> None:
+    """Zeros that equal zeros are no agreement."""
+    inertial = any(link.mass or link.inertia.any() for link in (model.root, *model.links))
+    resisted = any(joint.effects != JointEffects() for joint in model.joints)
+    if not (inertial or resisted or sampler.payload is not None):
+        raise InputError(f"no link of robot {model.name!r} has mass: nothing was compared")
 
-    What the subject alone has beyond any size is its error; what the reference recursion has so too is the input's.
-    """
-    for key, x in subject.values.items():
-        large = ~(_sizes(x) <= HUGE)
-        if large.any():
-            sizes = _sizes(getattr(batch.recursion[0], key))
-            large &= ~(sizes <= HUGE)
-        if large.any():
-            row = int(np.argmax(large))
+
+def _check_overflow(batch: Batch, program: Implementation, result: Evaluation) -> None:
+    """Where no bound on the rounding is finite there is no verdict; a result that alone is not finite is an error."""
+    for key, allowed in (result.allowance or {}).items():
+        beyond = ~np.isfinite(allowed).reshape(len(allowed), -1).all(axis=1)
+        if beyond.any():
             raise InputError(
-                f"{key} reaches {sizes[row]:.1e} in state {batch.first + row}, beyond {HUGE:.0e}, which no norm can "
-                "hold: pass gravity, payload and masses of a size that a robot can have"
+                f"{key} overflows in state {batch.first + int(np.argmax(beyond))}: float64 holds no bound on the "
+                f"rounding of {program.name} there; pass gravity, payload, masses and states that a robot can have"
             )
-
-
-def _sizes(x: Array) -> Array:
-    """The largest absolute value of each state, (N,)."""
-    largest: Array = np.abs(x).reshape(len(x), -1).max(axis=1, initial=0.0)
-    return largest

@@ -26,7 +26,9 @@ from rttrr_pin.validation.state import StateComparison, StateReport
 if TYPE_CHECKING:
     from rttrr_pin.validation.search import WorstCase  # loads scipy
 
-LEGEND = "relative: of |reference|; error / tolerance: 1 is all that rounding can explain"
+LEGEND = (
+    "relative: of |reference|, where that is not rounding itself; error / tolerance: 1 is all that rounding can explain"
+)
 
 
 def show_validation(result: Validation, console: Console, rerun: str = "", full: bool = False) -> None:
@@ -105,7 +107,12 @@ def _numbers_of(row: Row) -> list[str]:
     if row.absolute.value == 0.0:
         return ["equal", "", "", ""]
     error = f"{row.absolute.value:.1e} {row.unit}"
-    return [error, _in_eps(row.relative.value), _ratio(row.of_tolerance.value), str(row.of_tolerance.state)]
+    return [
+        error,
+        _in_eps(row.relative.value) if row.relative.value else "-",
+        _ratio(row.of_tolerance.value),
+        str(row.of_tolerance.state),
+    ]
 
 
 def _cell(row: Row | None) -> Text:
@@ -168,27 +175,36 @@ def _show_adjudications(result: Validation, console: Console) -> None:
         head = f"worst state {one.state}, checked in interval arithmetic"
         if shown:
             head = f"  state {one.state}" if number < shown else f"  worst passing state {one.state}"
-        console.print(Text(f"{head}: {who_is_right(one)}"), soft_wrap=True)
+        console.print(Text(f"{head}: {who_is_right(one, passed=number >= shown)}"), soft_wrap=True)
 
 
-def who_is_right(adjudication: Adjudication) -> str:
-    """Which programs are within rounding, and where the others are wrong first."""
-    right = ", ".join(f"{one.name} {_eps(one.farthest)}" for one in adjudication.right)
-    wrong = "; ".join(_wrong(one) for one in adjudication.wrong)
+def who_is_right(adjudication: Adjudication, passed: bool = False) -> str:
+    """Which programs are within rounding, and where the others are wrong first.
+
+    In a state that `passed`, one that is not within its own rounding is so near the other that both together allow it.
+    """
+    right = ", ".join(f"{one.name} {_off(one.farthest)}" for one in adjudication.right)
+    wrong = "; ".join(_wrong(one, passed) for one in adjudication.wrong)
     if not wrong:
         every = "both are" if len(adjudication.right) == 2 else "all are"
         return f"{every} within rounding ({right})"
     return f"within rounding: {right}; {wrong}" if right else f"no program is within rounding: {wrong}"
 
 
-def _wrong(assessment: Assessment) -> str:
+def _wrong(assessment: Assessment, passed: bool) -> str:
     first = assessment.first_wrong or assessment.farthest
-    return f"{assessment.name} is wrong by {_eps(first)}, first there"
+    if passed:
+        times = f"{_ratio(first.of_allowance)} of what its own rounding explains"
+        return f"{assessment.name} is off by {_off(first)}, {times} and within what that of both does"
+    return f"{assessment.name} is wrong by {_off(first)}, first there"
 
 
-def _eps(deviation: Deviation) -> str:
-    """How far off, and where."""
-    return f"{_in_eps(deviation.eps)} eps at {deviation.quantity} of {deviation.at}"
+def _off(deviation: Deviation) -> str:
+    """How far off, and where: in eps of the true value, or in its unit where that is zero to rounding."""
+    size = f"{_in_eps(deviation.eps)} eps" if deviation.relative else f"{deviation.error:.1e} {deviation.unit}"
+    return (
+        f"{size} at {deviation.quantity} of {deviation.at}{'' if deviation.relative else ', which is zero to rounding'}"
+    )
 
 
 def show_state(report: StateReport, console: Console) -> None:
@@ -204,7 +220,11 @@ def show_state(report: StateReport, console: Console) -> None:
         if len(report.comparisons) > 1:
             console.print(Text(f"{report.subject} against {one.reference}", "bold"))
         _show_comparison(report, one, console)
-    line = f"checked in intervals of {report.adjudication.bits} bits: {who_is_right(report.adjudication)}"
+    for note in report.notes:
+        console.print(Text(note, "dim"), soft_wrap=True)
+    line = (
+        f"checked in intervals of {report.adjudication.bits} bits: {who_is_right(report.adjudication, report.passed)}"
+    )
     console.print(Text(line), soft_wrap=True)
 
 
@@ -225,7 +245,7 @@ def _show_comparison(report: StateReport, comparison: StateComparison, console: 
             Text(f"{row.at} [{row.unit}]" if row.quantity == "tau" else row.at),
             *("\n".join(f"{x:.15g}" for x in side) for side in (subject, reference)),
             f"{one.error[0]:.1e}",
-            _in_eps(one.relative[0]),
+            _in_eps(one.relative[0]) if one.known[0] or not one.error[0] else "-",
             word(bool(one.of_tolerance[0] <= 1.0)),
         )
     console.print(table)
@@ -263,6 +283,8 @@ def _short(x: Array) -> str:
 def show_search(worst: WorstCase, console: Console) -> None:
     """What a search came to, beside what chance had come to."""
     console.print(word(worst.passed), Text(worst.summary().partition(" ")[2]), soft_wrap=True)
+    for note in worst.notes:
+        console.print(Text(note, "dim"), soft_wrap=True)
 
 
 LOOK = {"agree": word(True), "disagree": word(False), "unusable": Text("FILE", "bold yellow")}

@@ -76,7 +76,8 @@ class Validation:
         sampling: how they were drawn; "table" where a table of results brought them.
         seed: of the generator.
         payload: what the robot carried, in words.
-        notes: what a reader of the verdict must know, such as the digits that a table is judged at.
+        notes: what a reader of the verdict must know, such as the digits that a table is judged at, or numbers that a
+            library took other than the file has them.
         seconds: wall time.
         versions: of what took part.
         failing: how many states lie beyond the tolerance of any reference.
@@ -227,10 +228,7 @@ def validate(
         sampling=run.states.sampling,
         seed=seed,
         payload=described(payload),
-        notes=(
-            *(note.text for note in robot.model.notes),
-            *(getattr(program, "note", "") for program in run.programs if getattr(program, "note", "")),
-        ),
+        notes=run.notes,
         seconds=time.perf_counter() - start,
         versions=versions(run.programs),
         failing=run.ranking.failing,

@@ -43,6 +43,7 @@ class WorstCase:
         evaluations: how many states were looked at.
         seed: of the search; the same seed comes to the same state.
         batch: the state, a batch of one.
+        notes: what a reader of the verdict must know, as in `Validation`.
     """
 
     subject: str
@@ -54,6 +55,7 @@ class WorstCase:
     evaluations: int
     seed: int
     batch: Batch
+    notes: tuple[str, ...] = ()
 
     @property
     def passed(self) -> bool:
@@ -73,8 +75,8 @@ class WorstCase:
         names = ("subject", "reference", "quantity", "at", "of_tolerance", "random", "evaluations", "seed")
         loads = [{"link": x.link, "f": x.f.reshape(3).tolist(), "n": x.n.reshape(3).tolist()} for x in self.batch.loads]
         state = {name: getattr(self.batch, name)[0].tolist() for name in "qva"} | {"loads": loads}
-        notes = [note.text for note in self.batch.model.notes]
-        return {"schema": 1, "passed": self.passed, **{n: getattr(self, n) for n in names}, **state, "notes": notes}
+        own = {name: getattr(self, name) for name in names}
+        return {"schema": 1, "passed": self.passed, **own, **state, "notes": self.notes}
 
 
 def search_worst_state(
@@ -137,4 +139,4 @@ def search_worst_state(
     pairs = zip(run.references, run.comparisons, strict=True)
     rows = [(label(reference), row.quantity, row.at) for reference, comparison in pairs for row in comparison.rows]
     worst = int(np.argmax(reached))
-    return WorstCase(label(run.subject), *rows[worst], float(reached[worst]), random, done, seed, batch)
+    return WorstCase(label(run.subject), *rows[worst], float(reached[worst]), random, done, seed, batch, run.notes)

@@ -71,6 +71,7 @@ class StateReport:
         result: what it gave, a batch of one.
         comparisons: what each reference says of the state.
         adjudication: who is right, by the exact reference.
+        notes: what a reader of the verdict must know, as in `Validation`.
     """
 
     robot: str
@@ -83,6 +84,7 @@ class StateReport:
     result: Evaluation
     comparisons: tuple[StateComparison, ...]
     adjudication: Adjudication
+    notes: tuple[str, ...] = ()
 
     @property
     def passed(self) -> bool:
@@ -120,7 +122,7 @@ class StateReport:
             "tolerance": TOLERANCE,
             "references": [one.to_dict() for one in self.comparisons],
             "adjudication": adjudication_dict(self.adjudication),
-            "notes": [note.text for note in self.batch.model.notes],
+            "notes": self.notes,
         }
 
 
@@ -163,4 +165,5 @@ def compare_state(
             for program, result, comparison, differences in seen
         ),
         adjudication=run.adjudicate(batch, results),
+        notes=run.notes,
     )

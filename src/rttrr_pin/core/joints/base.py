@@ -54,11 +54,14 @@ class JointState:
         q: [rad, m]; of a floating joint x, y, z and a unit quaternion (x, y, z, w).
         v: rates; of a planar or floating joint the components, in {i}, of the twist against the parent.
         a: time derivatives of the components of v.
+        signs_of: scalars with the signs of v, of a joint that follows another: multiplier times v may underflow; of
+            any other joint v itself, and empty here.
     """
 
     q: Sequence[Scalar]
     v: Sequence[Scalar]
     a: Sequence[Scalar]
+    signs_of: Sequence[Scalar] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,34 @@
+"""The norm of vectors of any size."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from rttrr_pin.core.arrays import norm
+from support.tolerances import EPS
+
+
+@given(st.lists(st.floats(-1e308, 1e308), min_size=1, max_size=6))
+def test_no_square_overflows_or_vanishes(numbers: list[float]) -> None:
+    length, other = float(norm(np.array(numbers))), math.hypot(*numbers)
+    assert length == other or abs(length - other) <= 4 * EPS * other + 5e-324
+
+
+@given(st.lists(st.floats(-1e150, 1e150).filter(lambda x: x == 0 or abs(x) > 1e-150), min_size=3, max_size=3))
+def test_bits_are_those_of_the_plain_formula(numbers: list[float]) -> None:
+    assert norm(np.array([numbers]))[0] == np.linalg.norm(np.array([numbers]), axis=-1)[0]
+
+
+@pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
+def test_what_is_not_finite_stays_so(bad: float) -> None:
+    lengths = norm(np.array([[1.0, bad, 2.0], [3.0, 4.0, 0.0]]))
+    assert not np.isfinite(lengths[0]) and lengths[1] == 5.0
+
+
+def test_of_no_numbers_it_is_zero() -> None:
+    assert norm(np.zeros((4, 0))).tolist() == [0.0] * 4
