@@ -12,14 +12,18 @@ import pytest
 
 import rttrr_pin
 from rttrr_pin import JointEffects, Robot, Wrench, validate
-from rttrr_pin.core.joints import CONTINUOUS, FIXED, PLANAR
-from rttrr_pin.core.model import Model
+from rttrr_pin.compile.constants import error_of
+from rttrr_pin.compile.trace import TRACING_WITH_ERRORS
+from rttrr_pin.core.dynamics import body_of
+from rttrr_pin.core.joint import Joint, Lock
+from rttrr_pin.core.joints import CONTINUOUS, FIXED, PLANAR, REVOLUTE
+from rttrr_pin.core.model import Link, Model
 from rttrr_pin.errors import InputError, NumberError, ShapeError, UnknownNameError
 from rttrr_pin.urdf.altered import with_fixed
 from rttrr_pin.validation import Sampler
 from support.recursion import recursion
 from support.serial_chains import random_chain
-from support.tolerances import ROUNDING, norm_error
+from support.tolerances import EPS, ROUNDING, norm_error
 from support.trees import TREE_TYPES, random_tree
 
 STATES = 3
@@ -248,6 +252,19 @@ def test_armature_of_a_locked_joint_counts_no_more(rttrr: Robot) -> None:
     driven = rttrr.with_joint_effects({"joint_1": JointEffects(1.0, 2.0, 3.0), "joint_3": JointEffects(0.5)})
     ours = driven.with_locked({"joint_1": 0.1})
     assert ours.inverse_dynamics([0] * 4, [1] * 4, [1] * 4).tau_joint.tolist() == [0, 0.5, 0, 0]
+    assert ours.model.joints[0].effects == JointEffects()
+
+
+def test_a_locked_placement_knows_how_it_is_rounded() -> None:
+    """Sine and cosine of the angle bring their error into the kernel's bounds, as an rpy of the file does."""
+    joint = rttrr_pin.load(random_chain(1, ("revolute",))).with_locked({"joint_1": 0.7}).model.joints[0]
+    plain = replace(joint, lock=replace(joint.lock, joint=replace(joint.lock.joint, rotated=False)))  # type: ignore[type-var]
+    for one in (joint, plain):
+        body = body_of(one, Link("x"), TRACING_WITH_ERRORS)
+        assert all(error_of(x) > EPS / 2 for row in body.R.rows for x in row)  # type: ignore[arg-type]
+    about_x = Joint("x", REVOLUTE)
+    locked = body_of(Joint("x", FIXED, lock=Lock(about_x, (0.7,))), Link("x"), TRACING_WITH_ERRORS)
+    assert all(error_of(x) > 0.0 for x in (*locked.R.rows[1],)[1:])  # type: ignore[arg-type]
 
 
 def test_a_robot_of_numbers_and_one_of_an_object_can_be_altered(rttrr: Robot) -> None:
