@@ -105,6 +105,8 @@ class UrdfError(RttrrError):
     def __init__(self, message: str, *, source: str, line: int | None = None, element: str = "") -> None:
         self.source, self.line, self.element = source, line, element
         where = source if line is None else f"{source}, line {line}"
+        if len(message) > LONGEST_MESSAGE:  # names of a file may have millions of letters
+            message = f"{message[:LONGEST_MESSAGE]}... ({len(message):,} characters)"
         super().__init__(f"{where}: {element + ': ' if element else ''}{message}")
 
 
@@ -142,6 +144,9 @@ class ModelMismatchError(ImplementationError):
             f"{note and chr(10)}{note}"
         )
 
+
+LONGEST_MESSAGE = 1500
+"""Characters of what is said of a file."""
 
 LONGEST, MOST = 200, 2000
 """Characters of a name, and names, that similar ones are looked for among: the search is quadratic in both."""

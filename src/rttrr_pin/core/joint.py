@@ -123,7 +123,7 @@ class Joint:
                 f"axis of {self.type} joint {self.name!r} is {self.axis.tolist()}, "
                 f"expected {[int(x) for x in direction]}: turn the joint by R"
             )
-        if not np.allclose(self.R @ self.R.T, np.eye(3), rtol=0.0, atol=1e-9) or np.linalg.det(self.R) < 0.0:
+        if not (np.abs(self.R @ self.R.T - np.eye(3)) <= 1e-9).all() or np.linalg.det(self.R) < 0.0:
             raise InputError(f"R of joint {self.name!r} is {self.R.tolist()}: expected a rotation")
 
     @property

@@ -205,10 +205,10 @@ def chosen(select: tuple[str, ...], ignore: tuple[str, ...]) -> list[Check]:
     for prefix in (*select, *ignore):
         if not prefix or not any(check.id.startswith(prefix) for check in CHECKS):
             raise UnknownNameError("check", prefix, [check.id for check in CHECKS])
-    chosen = [check for check in CHECKS if check.id.startswith(select or "") and not check.id.startswith(ignore)]
-    if not chosen:
+    left = [check for check in CHECKS if check.id.startswith(select or "") and not check.id.startswith(ignore)]
+    if not left:
         raise InputError(f"no check is left to run: {', '.join(ignore)} leaves out all that was selected")
-    return chosen
+    return left
 
 
 @dataclass(frozen=True)

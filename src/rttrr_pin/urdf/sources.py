@@ -37,7 +37,7 @@ OBJECTS = {"pinocchio": "Model", "mujoco": "MjModel", "yourdfpy": "URDF"}
 LARGEST_FILE = 16 * 2**20
 """Bytes; the largest URDF of known robots has about one MiB."""
 
-MOST_TAGS = 25_000
+MOST_TAGS = 20_000
 """Of 1,500 published files none has more than 6,400; to read more takes more seconds than anyone waits."""
 
 EXAMPLE = "example:"
