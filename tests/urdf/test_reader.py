@@ -173,7 +173,7 @@ def test_a_huge_file_is_refused_unread(tmp_path: Path) -> None:
     path = tmp_path / "huge.urdf"
     with path.open("wb") as file:
         file.truncate(LARGEST_FILE + 1)
-    with pytest.raises(UrdfError, match="64 MiB"):
+    with pytest.raises(UrdfError, match="16 MiB"):
         rttrr_pin.load(path)
 
 
@@ -344,7 +344,7 @@ def test_long_attributes_are_read_in_linear_time() -> None:
 
 def test_long_chains_of_followers_are_refused() -> None:
     """To follow each of them to its end would take time with the cube of their number: minutes, found by fuzzing."""
-    count = 3000
+    count = 2500
     links = "".join(f'<link name="l{i}"/>' for i in range(count + 1))
     joints = "".join(
         f'<joint name="j{i}" type="revolute"><parent link="l0"/><child link="l{i + 1}"/><axis xyz="0 0 1"/>'
