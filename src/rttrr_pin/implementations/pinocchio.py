@@ -24,6 +24,7 @@ body, whichever link of it they hang on, and none if the body is the universe: i
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import NamedTuple
@@ -59,6 +60,9 @@ from rttrr_pin.implementations.pinocchio_model import (
 )
 from rttrr_pin.implementations.protocol import Batch, Evaluation
 
+TENSORS = 4
+"""Arrays of nv^3 numbers in Pinocchio's data, for second derivatives: of 500 joints they take 4 GB."""
+
 OPERATIONS = 4
 """Roundings on the way of each term over one joint: a vector product, a sum, a change of frame."""
 
@@ -78,6 +82,7 @@ class Pinocchio:
             ModelMismatchError: Pinocchio built something else.
         """
         urdf = urdf_of(model, "Pinocchio")
+        _check_memory(sum(joint.nv for joint in model.joints))
         reserved = {UNIVERSE, ROOT_JOINT} if model.floating else {UNIVERSE}
         taken = [joint.name for joint in model.joints[model.floating :] if joint.name in reserved]
         if taken:
@@ -241,6 +246,20 @@ class Pinocchio:
             lengths = sum(own.unit == "m" for own in joint.joint.type.coordinates)  # they come first
             out[:, self.pin_model.getJointId(joint.joint.name)] += norm(motion.q[:, joint.q][:, :lengths])
         return out
+
+
+def _check_memory(nv: int) -> None:
+    """Say before it is tried that Pinocchio's data does not fit in memory.
+
+    Raises:
+        ImplementationError: it does not.
+    """
+    needed, there = TENSORS * 8 * nv**3, os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
+    if needed > there:
+        raise ImplementationError(
+            f"Pinocchio's data grows with the cube of the degrees of freedom: {needed / 1e9:,.0f} GB for the {nv:,} of "
+            f"this robot, on a machine with {there / 1e9:,.0f} GB; compare with --reference recursion instead"
+        )
 
 
 class _Record(NamedTuple):
