@@ -2,13 +2,21 @@
 
 from __future__ import annotations
 
+import random
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 
 import pytest
 
 from rttrr_pin.auditing import Kind, Verdict, audit, read_publication
+from rttrr_pin.auditing.derived import derive
+from rttrr_pin.auditing.printed import Quotient
+from rttrr_pin.auditing.quotients import written
+from rttrr_pin.auditing.reading.component import LONGEST
 from rttrr_pin.auditing.results import AuditResult, ComponentAudit
+from rttrr_pin.auditing.spelling import writing
+from rttrr_pin.errors import InputError
 
 REPORTS = Path(__file__).parents[1] / "data/reports"
 
@@ -391,3 +399,48 @@ def test_the_paper_s_corrections_are_spelled_from_the_tables(of_the_paper: Audit
     """A misprint such as {}^4 before a rate is in no corrected equation, and none has two ways to be read."""
     for component in of_the_paper.components:
         assert not any("{}^4 \\ddot" in text or "{}^4\\ddot" in text for text, _ in component.corrected)
+
+
+def random_arm(rng: random.Random) -> str:
+    """Two or three links that turn or slide about any axes, with a mass each."""
+    links = []
+    spin = 'inertia = ["I", "0", "0", "I", "0", "I"]\n'
+    for i in range(1, rng.choice((3, 4))):
+        joint = f"{rng.choice(('revolute about', 'revolute about', 'prismatic along'))} {rng.choice(('', '-'))}{rng.choice('xyz')}"
+        origin, com = ([x, "0", "0"][k:] + [x, "0", "0"][:k] for k, x in ((rng.randrange(3), f"l_{i}"),) for _ in "ab")
+        links.append(
+            f'[[link]]\njoint = "{joint}"\norigin = {origin}\nmass = "m_{i}"\ncom = {com}\n'.replace("'", '"') + spin
+        )
+    inertia = '[[symbol]]\nname = "I"\ndimension = "inertia"\n'
+    return ARM.split("[[link]]")[0] + "".join(links) + inertia + "[[symbol]]" + ARM.split("[[symbol]]", 1)[1]
+
+
+def test_accelerations_of_a_singular_robot_are_refused(tmp_path: Path) -> None:
+    turning = ARM.replace("about z", "about x")
+    with pytest.raises(InputError, match="singular"):
+        audited(tmp_path, turning, ('quantity = "a"\njoint = 1', "0"))
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_what_is_derived_is_right_and_with_a_sign_turned_it_is_not(seed: int, tmp_path: Path) -> None:
+    """Each quantity of random arms, written by the writers of closed forms, read again, and then with an error."""
+    rng = random.Random(seed)
+    head = random_arm(rng)
+    count = head.count("[[link]]")
+    about = [f'quantity = "{name}"\njoint = {count}' for name in ("g", "a", "tau")]
+    about.append(f'quantity = "M"\nrow = 1\ncolumn = {count}')
+    audited(tmp_path, head, *((text, "0") for text in about))
+    publication = read_publication(tmp_path / "a.toml")
+    derived = derive(publication)[0]
+    write = writing(publication, derived.symbols, ())
+    for equation, stated in zip(publication.equations, about, strict=True):
+        (name,) = equation.names
+        right = (derived.solutions.get(name) or [Quotient(derived.expressions.get(name, {}))])[0]
+        text = written(right, write, latex=True)
+        if not right.numerator or len(text) > LONGEST:
+            continue
+        assert_right(audited(tmp_path, head, (stated, text)))
+        factors = rng.choice(list(right.numerator))
+        turned = {**right.numerator, factors: -right.numerator[factors]}
+        wrong = written(replace(right, numerator=turned), write, latex=True)
+        assert_wrong(only(audited(tmp_path, head, (stated, wrong))))

@@ -221,12 +221,12 @@ def _many_links(rng: random.Random) -> tuple[str, str]:
 
 def _long_text(rng: random.Random) -> tuple[str, str]:
     term = rng.choice(("m_1 + ", "(", "m_1 (", r"\frac{1}{", "m_1^", "m_1_", "{}^4", r"\dot{", "c_", "1 ", "-", r"\\ "))
-    return ".toml", _equation("latex", term * rng.choice((100, 900, 3000, 50_000)) + "m_1", TWO_LINK)
+    return ".toml", _equation("latex", term * rng.choice((100, 480, 900, 3000, 50_000)) + "m_1", TWO_LINK)
 
 
 def _long_code(rng: random.Random) -> tuple[str, str]:
     term = rng.choice(("m + ", "(", "m*(", "1/(", "-", "m**", "not ", "a.", "q1(", "sin(", "m*", "(m + l)*", "1/m + "))
-    return ".toml", _equation("python", term * rng.choice((100, 900, 3000, 50_000)) + "m", PYTHON)
+    return ".toml", _equation("python", term * rng.choice((100, 480, 900, 3000, 50_000)) + "m", PYTHON)
 
 
 def _powers(rng: random.Random) -> tuple[str, str]:

@@ -180,7 +180,8 @@ class Witness:
         if quantity == "a":
             M = np.array(self._pinocchio("M")["M"])
             held = self._pinocchio_at(self.v, 0.0 * self.a, self._loads)["tau"]
-            return {"a": np.linalg.solve(M, np.array(list(self._forces.values())) - held)}
+            with np.errstate(all="ignore"):
+                return {"a": np.linalg.lstsq(M, np.array(list(self._forces.values())) - held, rcond=None)[0]}
         return self._pinocchio_values
 
     @cached_property

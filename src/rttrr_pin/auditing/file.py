@@ -12,7 +12,7 @@ from rttrr_pin.auditing.publication import DEFINITION, Convention, Equation, Pub
 from rttrr_pin.core.model import Model
 from rttrr_pin.derivation.symbol_file import PUBLISHED, SYMBOL_KEYS, read_symbols, spell
 from rttrr_pin.derivation.symbolic_robot import Slot, SymbolicRobot, value_of_slot
-from rttrr_pin.derivation.tables import Table, read_table
+from rttrr_pin.derivation.tables import Table, read_table, shown
 from rttrr_pin.derivation.templates import filled
 from rttrr_pin.errors import InputError
 
@@ -56,7 +56,7 @@ def read_publication(path: str | PathLike[str] = RTTRR, xacro: bool = False) -> 
     file = read_table(path).only(FILE_KEYS)
     language = file.get("language", str, "latex")
     if language not in COORDINATES:
-        raise file.error(f"language is {language!r}: expected {' or '.join(COORDINATES)}")
+        raise file.error(f"language is {shown(language)}: expected {' or '.join(COORDINATES)}")
     latex = language == "latex"
     symbols = read_symbols(*_symbol_file(file, path), latex, xacro=xacro)
     spellings = dict(symbols.spellings)
@@ -89,12 +89,12 @@ def _symbol_file(file: Table, path: Path) -> tuple[Table, Path]:
         return file, path
     own = [key for key in SYMBOL_KEYS if key in file.entries]
     if own:
-        raise file.error(f"has [{own[0]}] beside symbols = {name!r}: leave one")
+        raise file.error(f"has [{own[0]}] beside symbols = {shown(name)}: leave one")
     beside = path.parent / name
     target = beside if beside.is_file() else PUBLISHED / f"{name}.toml"
     if not target.is_file():
         known = ", ".join(sorted(x.stem for x in PUBLISHED.glob("*.toml")))
-        raise file.error(f"symbols is {name!r}: expected a file beside this one, or one of {known}")
+        raise file.error(f"symbols is {shown(name)}: expected a file beside this one, or one of {known}")
     return read_table(target).only(FILE_KEYS), target
 
 
@@ -167,7 +167,7 @@ def _equation(table: Table, model: Model, language: str) -> Equation:
     table.only(EQUATION_KEYS)
     number = table.entries.get("number", table.place.removeprefix("equation "))
     if isinstance(number, bool) or not isinstance(number, int | str):
-        raise table.error(f'number is {number!r}: expected a whole number, or a text such as "6.10"')
+        raise table.error(f'number is {shown(number)}: expected a whole number, or a text such as "6.10"')
     texts = tuple(table.texts(language))
     line = table.get("line", int, 0)
     quantity = table.get("quantity", str)
@@ -176,7 +176,7 @@ def _equation(table: Table, model: Model, language: str) -> Equation:
     if quantity in VECTORS:
         axes = table.get("components", str, "xyz")
         if not axes or any(axis not in "xyz" for axis in axes) or len(set(axes)) < len(axes):
-            raise table.error(f"components is {axes!r}: expected xyz, or some of them")
+            raise table.error(f"components is {shown(axes)}: expected xyz, or some of them")
         _one_text_each(table, texts, len(axes), language)
         return Equation(number, quantity, _place(table, "link", model.link_names), axes, texts, line)
     if quantity in SCALARS and "joint" in table.entries:
@@ -193,7 +193,7 @@ def _equation(table: Table, model: Model, language: str) -> Equation:
         _one_text_each(table, texts, len(rows) * len(columns), language)
         return Equation(number, quantity, -1, "", texts, line, places=rows, columns=columns)
     known = ", ".join((*VECTORS, *SCALARS, *MATRICES))
-    raise table.error(f"quantity is {quantity!r}: expected {known} or {DEFINITION}")
+    raise table.error(f"quantity is {shown(quantity)}: expected {known} or {DEFINITION}")
 
 
 def _one_text_each(table: Table, texts: Sequence[str], count: int, language: str) -> None:
@@ -209,7 +209,7 @@ def _place(table: Table, key: str, names: Sequence[str]) -> int:
         return names.index(value)
     if isinstance(value, int) and not isinstance(value, bool) and 1 <= value <= len(names):
         return value - 1
-    raise table.error(f"{key} is {value!r}: expected 1 to {len(names)}, or one of {', '.join(names)}")
+    raise table.error(f"{key} is {shown(value)}: expected 1 to {len(names)}, or one of {', '.join(names)}")
 
 
 def _conventions(file: Table, symbols: set[str]) -> list[Convention]:
@@ -219,7 +219,7 @@ def _conventions(file: Table, symbols: set[str]) -> list[Convention]:
         flip = table.texts("flip", default=())
         unknown = [name for name in flip if name not in symbols]
         if unknown:
-            raise table.error(f"flip names {unknown[0]!r}, which is no symbol: use names of [[symbol]]")
+            raise table.error(f"flip names {shown(unknown[0])}, which is no symbol: use names of [[symbol]]")
         numbers = tuple(table.get("equations", list, []))
         conventions.append(Convention(table.get("title", str), table.get("text", str), numbers, tuple(flip)))
     return conventions

@@ -10,6 +10,7 @@ from rttrr_pin.derivation.motion import index
 from rttrr_pin.derivation.ring import Polynomial, Ring
 from rttrr_pin.derivation.symbolic_robot import SymbolicRobot
 from rttrr_pin.derivation.symbols import FORCE, MOMENT, Role, Symbol
+from rttrr_pin.errors import InputError
 
 MOST_JOINTS, MOST_PRODUCTS = 4, 200_000
 """Of a robot whose equations are solved together, and products of terms on the way."""
@@ -48,6 +49,8 @@ class Solver:
     def _by_all(self, k: int) -> Iterator[Quotient]:
         replaced = [[*row[:k], x, *row[k + 1 :]] for row, x in zip(self._M, self._right, strict=True)]
         numerator, denominator = self._determinant(replaced), self._determinant(self._M)
+        if denominator is not None and not denominator:
+            raise InputError("this robot's mass matrix is singular: forces do not tell its accelerations")
         if numerator is not None and denominator is not None:
             yield self._quotient(numerator, denominator)
 

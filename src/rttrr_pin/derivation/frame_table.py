@@ -50,7 +50,7 @@ def joint_motion(link: Table) -> tuple[str, tuple[float, ...]]:
         sign = -1.0 if words[2].startswith("-") else 1.0
         return words[0], tuple(sign if axis in words[2] else 0.0 for axis in AXES)
     raise link.error(
-        f"joint is {link.entries['joint']!r}: expected 'revolute about z', 'prismatic along -y', 'fixed', ..."
+        f"joint is {shown(link.entries['joint'])}: expected 'revolute about z', 'prismatic along -y', 'fixed', ..."
     )
 
 
@@ -65,13 +65,13 @@ def model_of(links: Sequence[Table], number: Number, has_gravity: bool) -> Model
     bodies, joints = [], []
     for i, link in enumerate(links):
         if names[i] in ("base", *names[:i]):
-            raise link.error(f"name is {names[i]!r}, which another link has: give each its own")
+            raise link.error(f"name is {shown(names[i])}, which another link has: give each its own")
         mass = number(("mass", i))
         if mass < 0:
             raise link.error(f"mass is {mass} with the numbers of the symbols: expected 0 or more")
         parent = link.get("parent", str, names[i - 1] if i else "base")
         if parent not in ("base", *names[:i]):
-            raise link.error(f"parent is {parent!r}: expected base or a link above: {', '.join(names[:i])}")
+            raise link.error(f"parent is {shown(parent)}: expected base or a link above: {', '.join(names[:i])}")
         inertia = np.zeros((3, 3))
         for x, y in ENTRIES:
             inertia[x, y] = inertia[y, x] = number(("inertia", i, x, y))

@@ -20,7 +20,7 @@ from rttrr_pin.derivation.symbolic_robot import (
     value_of_slot,
 )
 from rttrr_pin.derivation.symbols import INERTIA, LENGTH, MASS, Dimension, Expression, Symbol, dimension_of
-from rttrr_pin.derivation.tables import Table, read_table
+from rttrr_pin.derivation.tables import Table, read_table, shown
 from rttrr_pin.derivation.templates import MOST_SYMBOLS, Declaration, declarations
 from rttrr_pin.errors import InputError, RttrrError
 from rttrr_pin.loading import load
@@ -103,7 +103,7 @@ def read_symbols(
     aliases = {name: one.equal for name, one in declared.items() if one.equal}
     wrong = [equal for equal in aliases.values() if equal not in declared or equal in aliases]
     if wrong:
-        raise file.error(f"a symbol is said to be equal to {wrong[0]!r}: expected the name of another symbol")
+        raise file.error(f"a symbol is said to be equal to {shown(wrong[0])}: expected the name of another symbol")
     symbols = [one.symbol for name, one in declared.items() if name not in aliases]
     slots = dict(_slots(links, about, [symbol.name for symbol in symbols]))
     values = _given_values(file, symbols)
@@ -130,7 +130,7 @@ def read_symbols(
     idle = [symbol.name for symbol in symbols if symbol.name not in roles]
     if idle:
         raise file.error(
-            f"symbol {idle[0]!r} stands for no number: use it in [robot], [[link]] or [payload]; "
+            f"symbol {shown(idle[0])} stands for no number: use it in [robot], [[link]] or [payload]; "
             "what stands for other symbols is defined by an equation"
         )
     chosen = tuple(replace(symbol, role=roles[symbol.name]) for symbol in symbols)
@@ -144,7 +144,9 @@ def spell(spellings: dict[str, str], printed: Sequence[str], name: str, table: T
     for spelling in printed:
         other = spellings.setdefault(spelling, name)
         if other != name:
-            raise table.error(f"{spelling!r} is to be {name!r}, and is {other!r} already: spell them differently")
+            raise table.error(
+                f"{shown(spelling)} is to be {shown(name)}, and is {shown(other)} already: spell them differently"
+            )
 
 
 def _declared(file: Table, links: int, latex: bool) -> tuple[dict[str, Declaration], dict[str, str]]:
@@ -155,7 +157,7 @@ def _declared(file: Table, links: int, latex: bool) -> tuple[dict[str, Declarati
         for one in declarations(table, links, latex):
             name = one.symbol.name
             if name in declared:
-                raise table.error(f"symbol {name!r} is declared twice: leave one")
+                raise table.error(f"symbol {shown(name)} is declared twice: leave one")
             declared[name] = one
             if len(declared) > MOST_SYMBOLS:
                 raise file.error(f"declares more than {MOST_SYMBOLS} symbols: leave those of the equations")
@@ -168,7 +170,7 @@ def _given_values(file: Table, symbols: Sequence[Symbol]) -> dict[str, float]:
     values = {name: table.get(name, float) for name in table.entries}
     for name, value in values.items():
         if name not in {symbol.name for symbol in symbols}:
-            raise table.error(f"{name!r} is no symbol: declare it in [[symbol]]")
+            raise table.error(f"{shown(name)} is no symbol: declare it in [[symbol]]")
         if not math.isfinite(value):
             raise table.error(f"{name} is {value}: expected a finite number")
     return values
@@ -206,7 +208,7 @@ def _payload(table: Table, model: Model, symbols: Sequence[Symbol]) -> tuple[int
         return None, {}
     name = table.get("link", str, model.links[-1].name)
     if name not in model.link_names:
-        raise table.error(f"link is {name!r}: expected one of {', '.join(model.link_names)}")
+        raise table.error(f"link is {shown(name)}: expected one of {', '.join(model.link_names)}")
     read = _reader(table, [symbol.name for symbol in symbols])
     texts = {key: table.texts(key, 3, ("0", "0", "0")) for key in ("force", "moment")}
     return model.link_index(name), {(key, x): read(text) for key, row in texts.items() for x, text in enumerate(row)}
@@ -227,7 +229,7 @@ def _check_frames(model: Model, links: Sequence[Table]) -> None:
     for link in links:
         name = link.get("name", str)
         if name not in model.link_names:
-            raise link.error(f"the URDF has no link {name!r}: it has {', '.join(model.link_names)}")
+            raise link.error(f"the URDF has no link {shown(name)}: it has {', '.join(model.link_names)}")
         if "joint" in link.entries:
             joint = model.joints[model.link_index(name)]
             motion, axis = joint_motion(link)
@@ -235,7 +237,7 @@ def _check_frames(model: Model, links: Sequence[Table]) -> None:
             if not same_type or (motion != "fixed" and tuple(joint.axis.tolist()) != axis):
                 moves = f" about or along {joint.axis.tolist()}" if joint.nv else ""
                 raise link.error(
-                    f"joint is {link.entries['joint']!r}; in the URDF {joint.name} is {joint.type.name}{moves}"
+                    f"joint is {shown(link.entries['joint'])}; in the URDF {joint.name} is {joint.type.name}{moves}"
                 )
 
 
@@ -257,7 +259,7 @@ def _values_in(
     for slot, expression in slots.items():
         missing = [name for factors in expression for name, _ in factors if name not in values]
         if missing:
-            raise about.error(f"no number of the URDF tells {missing[0]!r}: give it in [values]")
+            raise about.error(f"no number of the URDF tells {shown(missing[0])}: give it in [values]")
         here, there = float(evaluate(expression, values)), value_of_slot(model, slot)
         if not math.isclose(here, there, rel_tol=SAME, abs_tol=SAME * SAME):
             raise about.error(

@@ -10,7 +10,7 @@ from math import prod
 
 from rttrr_pin.derivation.symbolic_robot import AXES
 from rttrr_pin.derivation.symbols import DIMENSIONS, Role, Symbol
-from rttrr_pin.derivation.tables import Table
+from rttrr_pin.derivation.tables import Table, shown
 
 PAIRS = ("xy", "xz", "yz")
 
@@ -51,14 +51,14 @@ def declarations(table: Table, links: int, latex: bool) -> Iterator[Declaration]
         raise table.error(f"has a text of more than {LONGEST_TEXT} characters: no symbol is printed so")
     dimension = table.get("dimension", str)
     if dimension not in DIMENSIONS:
-        raise table.error(f"dimension is {dimension!r}: expected {', '.join(DIMENSIONS)}")
+        raise table.error(f"dimension is {shown(dimension)}: expected {', '.join(DIMENSIONS)}")
     for values in _combinations(table, (name, *spellings), links):
         identifier = filled(name, values)
         if not identifier.isidentifier():
-            raise table.error(f"name is {identifier!r}: expected letters, digits and _, such as r_C1x")
+            raise table.error(f"name is {shown(identifier)}: expected letters, digits and _, such as r_C1x")
         if RESERVED.fullmatch(identifier):
             raise table.error(
-                f"name is {identifier!r}, which stands for a coordinate, a rate, an acceleration, a sine or a cosine: "
+                f"name is {shown(identifier)}, which stands for a coordinate, a rate, an acceleration, a sine or a cosine: "
                 "choose another name; how it is printed is for `latex` to say"
             )
         printed = tuple(dict.fromkeys(filled(spelling, values, latex) for spelling in spellings))

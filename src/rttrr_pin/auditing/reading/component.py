@@ -10,7 +10,7 @@ from rttrr_pin.auditing.reading.multiply import Ways, terms_of
 from rttrr_pin.auditing.reading.nodes import DividesError, Product
 from rttrr_pin.auditing.reading.quotient import quotient_of
 
-LONGEST = 20_000
+LONGEST = 12_000
 """Characters of one text: the longest of the paper has 6,000."""
 
 

@@ -15,7 +15,7 @@ from rttrr_pin.auditing.reading.nodes import LARGEST_POWER, DividesError, Factor
 from rttrr_pin.derivation.numbers import MOST_BITS, fits
 from rttrr_pin.derivation.symbols import factors_of
 
-LARGEST = 1000
+LARGEST = 500
 """Terms that a sum may expand to: the longest of the paper has 56."""
 
 Terms = tuple[PrintedTerm, ...]
