@@ -12,6 +12,7 @@ from functools import lru_cache
 from rttrr_pin.auditing.publication import Publication
 from rttrr_pin.derivation.latex import in_order, latex_sum
 from rttrr_pin.derivation.numbers import fits
+from rttrr_pin.derivation.ring import nearest
 from rttrr_pin.derivation.symbols import Role, Symbol, Term
 
 Writing = Callable[[Sequence[Term]], list[str]]
@@ -97,7 +98,7 @@ def _summed(symbol: Symbol, angle: Sequence[str], times: str) -> str:
 
 
 def _python_number(x: Fraction) -> str:
-    return str(x) if fits(x) else repr(float(x))
+    return str(x) if fits(x) else repr(nearest(x))
 
 
 def _python_sum(terms: Sequence[Term], symbols: Mapping[str, Symbol]) -> list[str]:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from fractions import Fraction
 
 from rttrr_pin.derivation.collect import SIMPLE
+from rttrr_pin.derivation.ring import nearest
 from rttrr_pin.derivation.symbols import MASS, Factors, Role, Symbol
 
 ORDER: Mapping[Role, int] = {
@@ -35,7 +36,7 @@ def latex_number(x: Fraction) -> str:
         return str(x.numerator)
     if x.denominator <= SIMPLE and x.numerator <= SIMPLE:
         return rf"\frac{{{x.numerator}}}{{{x.denominator}}}"
-    return decimal(float(x))
+    return decimal(nearest(x))
 
 
 def decimal(x: float) -> str:

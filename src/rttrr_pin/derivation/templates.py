@@ -58,8 +58,8 @@ def declarations(table: Table, links: int, latex: bool) -> Iterator[Declaration]
             raise table.error(f"name is {shown(identifier)}: expected letters, digits and _, such as r_C1x")
         if RESERVED.fullmatch(identifier):
             raise table.error(
-                f"name is {shown(identifier)}, which stands for a coordinate, a rate, an acceleration, a sine or a cosine: "
-                "choose another name; how it is printed is for `latex` to say"
+                f"name is {shown(identifier)}, which stands for a coordinate, a rate, an acceleration, a sine or a "
+                "cosine: choose another name; how it is printed is for `latex` to say"
             )
         printed = tuple(dict.fromkeys(filled(spelling, values, latex) for spelling in spellings))
         symbol = Symbol(identifier, printed[0], Role.PARAMETER, DIMENSIONS[dimension])

@@ -15,6 +15,7 @@ from rttrr_pin.auditing.reading.multiply import constant, terms_of
 from rttrr_pin.auditing.reading.nodes import LARGEST_POWER, Factor, Group, Named, Product
 from rttrr_pin.auditing.reading.vocabulary import angle_of, index_of, multiples_of, unclashing
 from rttrr_pin.derivation.numbers import exact_number
+from rttrr_pin.derivation.ring import nearest
 from rttrr_pin.errors import InputError, shortened
 
 Abbreviations = Mapping[str, Group]
@@ -196,7 +197,7 @@ class _Source:
             raise self._fault("only numbers may be powers", exponent)
         power = outer * number
         if power.denominator != 1 or not 0 <= power <= LARGEST_POWER:
-            raise self._fault(f"wanted a whole power from 0 to {LARGEST_POWER}, got {float(power):g}", exponent)
+            raise self._fault(f"wanted a whole power from 0 to {LARGEST_POWER}, got {nearest(power):g}", exponent)
         return int(power)
 
     def _angle(self, node: ast.Call) -> Named:
