@@ -16,6 +16,7 @@ from rttrr_pin.core.joints import FLOATING
 from rttrr_pin.core.model import STANDARD_GRAVITY, Model
 from rttrr_pin.errors import InputError, LoadWarning, ShapeError
 from rttrr_pin.robot import Robot
+from rttrr_pin.urdf.packages import named_packages
 from rttrr_pin.urdf.sources import AnySource, Reading, mjcf_path, robots_in
 
 
@@ -26,6 +27,9 @@ def load(
     friction: bool = False,
     xacro: bool = False,
     xacro_args: Mapping[str, object] | None = None,
+    lenient: bool = False,
+    mimic: bool = True,
+    packages: Mapping[str, str | os.PathLike[str]] | None = None,
 ) -> Robot:
     """Load a robot.
 
@@ -48,6 +52,13 @@ def load(
         xacro: whether a xacro file is expanded (with the extra `xacro`). That runs the Python expressions in it: only
             for files that you trust.
         xacro_args: values of the file's <xacro:arg>, such as `{"dof": 7}`; with some, a xacro file is expanded.
+        lenient: whether to go on where a URDF does not say what a number is, or says it in two ways: a joint without
+            axis or limits, unequal duplicates, missing entries, ... What is assumed stands in `robot.model.notes`, in
+            the reports of `validate`, and in the text that other programs are handed.
+        mimic: whether joints with <mimic> follow others; without it each moves by itself, as in Pinocchio unless it is
+            asked.
+        packages: folders by the names of ROS packages, for `$(find ...)` and `package://...`. Others are looked for
+            by their `package.xml`: upwards from the file, beside it, and in ROS_PACKAGE_PATH.
 
     Returns:
         The robot, its links and joints in Pinocchio's order for the same file, or in the object's.
@@ -68,7 +79,7 @@ def load(
         from rttrr_pin.implementations.mjcf import mjcf_source
 
         source = mjcf_source(file)
-    model = read_urdf(source, Reading(xacro, xacro_args or {}))
+    model = read_urdf(source, Reading(xacro, xacro_args or {}, lenient, mimic, named_packages(packages or {})))
     if field is not None:
         model = model.with_gravity(field)
     if base == "floating":
@@ -115,6 +126,9 @@ def load_all(
     friction: bool = False,
     xacro: bool = False,
     xacro_args: Mapping[str, object] | None = None,
+    lenient: bool = False,
+    mimic: bool = True,
+    packages: Mapping[str, str | os.PathLike[str]] | None = None,
 ) -> dict[str, Robot]:
     """Load every robot in a folder and below, its `.urdf` and `.xacro` files, each as `load` does.
 
@@ -125,5 +139,5 @@ def load_all(
         UrdfError: it is no folder, it holds no such file, or one of them cannot be used.
         ShapeError, NumberError, InputError: as in `load`.
     """
-    options = (gravity, base, friction, xacro, xacro_args)
+    options = (gravity, base, friction, xacro, xacro_args, lenient, mimic, packages)
     return {name: load(path, *options) for name, path in robots_in(folder).items()}

@@ -39,6 +39,10 @@ FIFTH_EDITION = re.compile(
 """Letters that XML 1.0 allows in names since its fifth edition, outside of comments and values."""
 
 
+COMMENT, DECLARATION = re.compile("<!--.*?-->", re.DOTALL), re.compile(r"<\?xml\b.*?\?>", re.DOTALL)
+"""What is no part of the tree: what stands in it does not matter."""
+
+
 class UnreadableError(Exception):
     """The text says nothing that a strict reader may accept."""
 
@@ -75,17 +79,31 @@ def numbers(element: Any, name: str, count: int, default: str | None = None) -> 
 
 
 def only(parent: Any, tag: str) -> Any:
-    """The one child of that name, whatever its case or namespace; None if there is none."""
+    """The one child of that name, whatever its case or namespace, or several that are equal; None if there is none."""
     found = [child for child in parent if local(child).lower() == tag]
-    if len(found) > 1 or (found and found[0].tag != tag):
+    if len({content(child) for child in found}) > 1 or any(child.tag != tag for child in found):
         raise UnreadableError(f"<{local(parent)}> holds {[child.tag for child in found]}")
-    if found and tag in ATTRIBUTES and set(found[0].attrib) - ATTRIBUTES[tag]:
+    if found and tag in ATTRIBUTES and not whole(found[0]):
         raise UnreadableError(f"<{tag}> has {sorted(found[0].attrib)}")
     return found[0] if found else None
 
 
+def content(element: Any) -> Any:
+    return element.tag, tuple(sorted(element.attrib.items())), tuple(map(content, element))
+
+
+def whole(element: Any) -> bool:
+    """Whether no attribute of it stands in the place of one that is not there."""
+    got = {name for name in element.attrib if not name.startswith("xmlns")}
+    for other, name in (("iyx", "ixy"), ("izx", "ixz"), ("izy", "iyz")):
+        if other in got and name in got and numbers(element, other, 1) == numbers(element, name, 1):
+            got.remove(other)
+    more = got - ATTRIBUTES[element.tag]
+    return not more or (element.tag in ("origin", "axis") and ATTRIBUTES[element.tag] <= got)
+
+
 def local(element: Any) -> str:
-    return str(element.tag).rpartition("}")[2]
+    return str(element.tag).rpartition(":")[2]
 
 
 def parse(data: bytes) -> Any:
@@ -110,17 +128,18 @@ def _parse(text: str) -> Any:
     def refuse(*_: Any) -> None:
         raise UnreadableError("document type")
 
-    def full(name: str) -> str:
-        return "{" + name if "}" in name else name
-
-    tree, parser = ET.TreeBuilder(), expat.ParserCreate("utf-8", "}")
+    tree, parser = ET.TreeBuilder(), expat.ParserCreate("utf-8")
     parser.StartDoctypeDeclHandler = refuse
-    parser.StartElementHandler = lambda tag, found: tree.start(full(tag), {full(key): x for key, x in found.items()})
-    parser.EndElementHandler = lambda tag: tree.end(full(tag))
+    parser.StartElementHandler = tree.start
+    parser.EndElementHandler = tree.end
     try:
-        parser.Parse(text.encode(), True)
+        parser.Parse(DECLARATION.sub("", COMMENT.sub("", text)).encode(), True)
         return tree.close()
-    except (expat.ExpatError, ValueError) as error:
+    except expat.ExpatError as error:
+        if error.code == expat.errors.codes[expat.errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT]:
+            return tree.close()
+        raise UnreadableError(f"not XML: {error}") from None
+    except ValueError as error:
         raise UnreadableError(f"not XML: {error}") from None
 
 
@@ -137,7 +156,8 @@ def _differences(root: Any, model: Any) -> Iterator[str]:
     joints = {joint.get("name"): joint for joint in root if joint.tag == "joint"}
     yield from _nothing_dropped(root, links, joints)
     got = {link.name: link for link in (model.root, *model.links)}
-    if root.tag != "robot" or root.get("name") != model.name:
+    name = root.get("name", "")
+    if root.tag != "robot" or (name if name.strip() else "robot") != model.name:
         yield f"robot {model.name!r}, the text has <{root.tag} name={root.get('name')!r}>"
     if set(got) != set(links) or len(model.links) + 1 != len(links):
         yield f"links {sorted(got)}, the text has {sorted(map(str, links))}"
@@ -168,7 +188,7 @@ def _nothing_dropped(root: Any, links: Any, joints: Any) -> Iterator[str]:
             count += local(element).lower() == tag and (element in list(root) or bool(parts & holds))
         if count != len(known):
             yield f"{len(known)} {tag}s, the text has {count}"
-    for part in ("inertial", "mass", "inertia", "axis", "mimic"):
+    for part in ("mass", "inertia", "axis", "mimic"):
         if any(local(child).lower() == part for child in root):
             yield f"<{part}> stands in <robot>"
 
@@ -195,7 +215,7 @@ def _link(xml: Any, link: Any) -> Iterator[str]:
 
 
 def _joint(xml: Any, joint: Any, model: Any, joints: Any) -> Iterator[str]:
-    kind, origin, axis = xml.get("type"), only(xml, "origin"), only(xml, "axis")
+    kind, origin = xml.get("type"), only(xml, "origin")
     if joint.type.name != kind:
         yield f"type {joint.type.name}, the text has {kind}"
     yield from _same("origin", joint.p, numbers(origin, "xyz", 3, "0 0 0"))
@@ -203,16 +223,16 @@ def _joint(xml: Any, joint: Any, model: Any, joints: Any) -> Iterator[str]:
     R = flat(rotation(rpy))
     yield from _near("rotation", joint.R.ravel(), R, 8.0) if any(rpy) else _same("rotation", joint.R.ravel(), R)
     if kind in ("revolute", "continuous", "prismatic"):
-        x = [Fraction(value) for value in numbers(axis, "xyz", 3)]
+        x = [Fraction(value) for value in numbers(only(xml, "axis"), "xyz", 3)]
         largest = max(abs(value) for value in x)
         length = math.sqrt(sum(float(value / largest) ** 2 for value in x))
         yield from _near("axis", joint.axis, [float(value / largest) / length for value in x], 4.0)
-    limit = only(xml, "limit")
-    yield from _limits(kind, limit, joint.limits)
+    if kind not in ("fixed", "floating"):
+        yield from _limits(kind, only(xml, "limit"), joint.limits)
     dynamics = only(xml, "dynamics")
     for name in ("damping", "friction"):
         yield from _same(name, [getattr(joint.effects, name)], numbers(dynamics, name, 1, "0"))
-    if only(xml, "mimic") is not None and kind != "fixed":
+    if kind != "fixed" and only(xml, "mimic") is not None:
         yield from _mimic(xml, joint, model, joints)
     elif joint.mimic is not None:
         yield "follows another joint, which the text does not say"
@@ -220,7 +240,7 @@ def _joint(xml: Any, joint: Any, model: Any, joints: Any) -> Iterator[str]:
 
 def _limits(kind: str, limit: Any, got: Any) -> Iterator[str]:
     wanted = {"lower": -math.inf, "upper": math.inf, "velocity": math.inf, "effort": math.inf}
-    if limit is not None and kind not in ("fixed", "floating"):
+    if limit is not None:
         if kind in ("revolute", "prismatic"):
             wanted["lower"] = wanted["upper"] = 0.0
         for name in wanted:

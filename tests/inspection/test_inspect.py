@@ -192,8 +192,9 @@ def found_by(check: str, text: str) -> list[str]:
 
 
 def test_each_check_has_a_case() -> None:
-    assert list(CASES) == [check.id for check in CHECKS]
-    assert len(set(CASES)) == len(CHECKS)
+    """Those of the file itself, F, have theirs in tests/urdf/test_faults.py."""
+    assert list(CASES) == [check.id for check in CHECKS if not check.id.startswith("F")]
+    assert len({check.id for check in CHECKS}) == len(CHECKS)
 
 
 @pytest.mark.parametrize(("check", "case"), [(check, k) for check, cases in CASES.items() for k in range(len(cases))])
@@ -426,7 +427,8 @@ def write(path: Path, text: str) -> str:
         (CASES["P105"][0][0], ["--select", "P105"], 1),
         (arm(), ["--select", "X"], 2),
         ("<robot/>", [], 2),
-        (arm().replace('value="1"', 'value="1,5"'), [], 2),
+        (arm().replace('value="1"', 'value="1,5"'), [], 1),
+        (arm().replace("</robot>", ""), [], 2),
     ],
 )
 def test_exit_codes(text: str, words: list[str], code: int, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

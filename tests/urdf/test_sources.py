@@ -290,7 +290,7 @@ def test_without_xacro_the_extra_is_named(tmp_path: Path, monkeypatch: pytest.Mo
 
 
 def test_xacro_that_was_not_expanded_is_refused() -> None:
-    with pytest.raises(UrdfError, match=r"line 3: <xacro:property> is xacro, which must be expanded"):
+    with pytest.raises(UrdfError, match=r"<xacro:body> is xacro, which must be expanded"):
         rttrr_pin.load(XACRO.format(mass=1.5, more=""))
 
 

@@ -206,10 +206,13 @@ class Model:
     def with_floating_base(self) -> Model:
         """The same robot, not bolted down: the root link becomes the first link, on a floating joint of its own.
 
-        Its coordinates are Pinocchio's: position and quaternion (x, y, z, w) of the root link in the world, its rates
-        the twist in the root link's frame, linear before angular.
+        The joint is called root_joint, or root_joint_2, ... where the robot has a joint of that name. Its coordinates
+        are Pinocchio's: position and quaternion (x, y, z, w) of the root link in the world, its rates the twist in the
+        root link's frame, linear before angular.
         """
-        base = Joint(ROOT_JOINT, FLOATING)
+        taken = {joint.name for joint in self.joints}
+        numbered = (ROOT_JOINT, *(f"{ROOT_JOINT}_{n}" for n in range(2, len(taken) + 3)))
+        base = Joint(next(name for name in numbered if name not in taken), FLOATING)
         moved = [
             replace(
                 joint, parent=joint.parent + 1, mimic=joint.mimic and replace(joint.mimic, joint=joint.mimic.joint + 1)

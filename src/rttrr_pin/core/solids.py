@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from math import inf, pi
+from math import atan2, cos, hypot, inf, pi, sin
 
 import numpy as np
 
@@ -95,7 +95,39 @@ class Sphere:
         return np.eye(3) * (0.4 * self.radius**2)
 
 
-Solid = Box | Cylinder | Sphere
+@dataclass(frozen=True)
+class Capsule:
+    """A cylinder about its own z axis with half a ball on each end.
+
+    Attributes:
+        radius: its radius [m].
+        length: of the cylinder alone, along z [m].
+    """
+
+    radius: float
+    length: float
+
+    def __post_init__(self) -> None:
+        _check_positive("Capsule.(radius, length)", (self.radius, self.length))
+
+    @property
+    def volume(self) -> float:
+        """Volume pi r^2 l + 4/3 pi r^3 [m^3]."""
+        return Cylinder(self.radius, self.length).volume + Sphere(self.radius).volume
+
+    def specific_inertia(self) -> Array:
+        """Those of cylinder and ball by their shares; the half balls, whose centres lie 3/8 r beyond the ends, moved.
+
+        Parallel axes, for half a ball: I_xx / m = 2/5 r^2 + l^2 / 4 + 3/8 r l.
+        """
+        r, l = self.radius, self.length
+        cylinder, ball = Cylinder(r, l), Sphere(r)
+        away = np.diag([1.0, 1.0, 0.0]) * (l * l / 4.0 + 3.0 / 8.0 * r * l)
+        share = ball.volume / self.volume
+        return (1.0 - share) * cylinder.specific_inertia() + share * (ball.specific_inertia() + away)
+
+
+Solid = Box | Cylinder | Sphere | Capsule
 """A homogeneous solid, in a frame at its own centre."""
 
 
@@ -187,6 +219,19 @@ def rotation(rpy: Sequence[float]) -> Array:
             [-sp, cp * sr, cp * cr],
         ]
     )
+
+
+def angles_of(R: Array) -> tuple[float, float, float]:
+    """Roll, pitch, yaw with R_z(yaw) R_y(pitch) R_x(roll) = R, accurate at pitch +-pi/2 too.
+
+    Near there roll and yaw are ill-conditioned one by one; yaw is taken from R R_x(roll)^T, so that it makes up for
+    whatever roll came out as.
+    """
+    roll = atan2(R[2, 1], R[2, 2])
+    pitch = atan2(-R[2, 0], hypot(R[2, 1], R[2, 2]))
+    c, s = cos(roll), sin(roll)
+    yaw = atan2(s * R[0, 2] - c * R[0, 1], c * R[1, 1] - s * R[1, 2])
+    return roll, pitch, yaw
 
 
 def combine(bodies: Iterable[RigidBody]) -> RigidBody:

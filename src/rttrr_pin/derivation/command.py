@@ -19,8 +19,10 @@ from rttrr_pin.reporting.options import (
     friction,
     gravity,
     numbers_of,
+    packages_of,
     payload_link,
     quiet,
+    reading,
     robot,
     target,
     xacro,
@@ -48,6 +50,7 @@ ALMOST = "some rotations are almost right angles, which makes many small terms: 
 @base
 @friction
 @xacro
+@reading
 @target("--latex", "a LaTeX document")
 @target("--markdown", "Markdown")
 @target("--python", "a Python module")
@@ -65,6 +68,9 @@ def derive(
     friction: bool,
     xacro: bool,
     xacro_arg: tuple[str, ...],
+    lenient: bool,
+    no_mimic: bool,
+    package: tuple[str, ...],
     latex: str | None,
     markdown: str | None,
     python: str | None,
@@ -79,8 +85,9 @@ def derive(
     wanted = {name: where for name, where in targets.items() if where is not None}
     check_targets({f"--{name}": where for name, where in wanted.items()}, [robot])
     field = None if gravity is None else numbers_of("--gravity", gravity, 3)
+    reads = {"lenient": lenient, "mimic": not no_mimic, "packages": packages_of(package)}
     arguments = xacro_arguments(xacro_arg)
-    model = load(robot, field, base, friction, xacro, arguments).model  # type: ignore[arg-type]
+    model = load(robot, field, base, friction, xacro, arguments, **reads).model  # type: ignore[arg-type]
     link = only_leaf(model) if payload_link is None else model.link_index(payload_link)
     start = time.perf_counter()
     published = None if numbers else published_symbols(robot, model, link)

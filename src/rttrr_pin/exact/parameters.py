@@ -23,7 +23,7 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import Arithmetic
 from rttrr_pin.errors import InputError
 from rttrr_pin.urdf.decimals import Number, NumberList
-from rttrr_pin.urdf.document import ZEROS, Placement, UrdfDocument, UrdfInertial, UrdfJoint
+from rttrr_pin.urdf.document import ZEROS, Placement, UrdfDocument, UrdfInertial, UrdfJoint, rows_of_quaternion
 from rttrr_pin.urdf.reader import model_of
 from rttrr_pin.urdf.vocabulary import ATTRIBUTES
 
@@ -67,7 +67,10 @@ class ExactParameters:
             return Vector(*(number(self.exact(x)) for x in numbers.each))
 
         def R(origin: Placement) -> Matrix:
-            """URDF's R = R_z(yaw) R_y(pitch) R_x(roll)."""
+            """URDF's R = R_z(yaw) R_y(pitch) R_x(roll), or that of the quaternion."""
+            if origin.quaternion is not None:
+                rows = rows_of_quaternion([self.exact(x) for x in origin.quaternion.each])
+                return Matrix(tuple(Vector(*map(number, row)) for row in rows))
             turns = zip(np.eye(3, dtype=int).tolist(), vector(origin.rpy), strict=True)
             x, y, z = (rotation(Vector(*axis), angle, arithmetic.sincos) for axis, angle in turns)
             return z @ (y @ x)
@@ -76,7 +79,7 @@ class ExactParameters:
         for joint, own, inertial in zip(self.model.joints, self.joints, self.inertials, strict=True):
             a, b, c = (Vector(*map(number, row)) for row in inertial.tensor_of(self.exact))
             I = Matrix((a, b, c))
-            if any(self.exact(angle) for angle in inertial.origin.rpy.each):
+            if inertial.origin.quaternion or any(self.exact(angle) for angle in inertial.origin.rpy.each):
                 turn = R(inertial.origin)
                 I = turn @ I @ turn.T
             moving = _as_it_moves(joint)

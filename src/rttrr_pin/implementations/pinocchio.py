@@ -34,7 +34,7 @@ import pinocchio as pin
 
 from rttrr_pin.core.arrays import Array, norm
 from rttrr_pin.core.joints import CONTINUOUS, PLANAR
-from rttrr_pin.core.model import ROOT_JOINT, UNIVERSE, Model
+from rttrr_pin.core.model import UNIVERSE, Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import QUANTITIES
@@ -83,14 +83,12 @@ class Pinocchio:
         """
         urdf = urdf_of(model, "Pinocchio")
         _check_memory(sum(joint.nv for joint in model.joints))
-        reserved = {UNIVERSE, ROOT_JOINT} if model.floating else {UNIVERSE}
-        taken = [joint.name for joint in model.joints[model.floating :] if joint.name in reserved]
-        if taken:
+        if any(joint.name == UNIVERSE for joint in model.joints):
             raise ImplementationError(
-                f"joint {taken[0]!r} has a name that Pinocchio keeps for itself: give it another one"
+                f"joint {UNIVERSE!r} has a name that Pinocchio keeps for itself: give it another one"
             )
         try:
-            root = (pin.JointModelFreeFlyer(),) if model.floating else ()
+            root = (pin.JointModelFreeFlyer(), model.joints[0].name) if model.floating else ()
             self.pin_model, said = built_model(urdf, *root)
         except ImplementationError as error:
             raise ImplementationError(f"Pinocchio refuses the URDF of {model.name!r}: {error}") from error

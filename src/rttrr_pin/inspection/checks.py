@@ -83,7 +83,7 @@ class Subject:
     def looks(self, link: UrdfLink) -> Looks:
         """The geometry of a link, loaded once."""
         if link.name not in self._looks:
-            self._looks[link.name] = looks_of(link, self.folder)
+            self._looks[link.name] = looks_of(link, self.folder, self.document.packages)
         return self._looks[link.name]
 
     def inertials(self) -> Iterator[tuple[UrdfLink, UrdfInertial]]:

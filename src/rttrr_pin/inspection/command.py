@@ -14,8 +14,19 @@ from rttrr_pin.inspection.many import Demands, Entry, inspect_each
 from rttrr_pin.inspection.parsers import PARSERS
 from rttrr_pin.inspection.report import repair_data, repair_summary
 from rttrr_pin.inspection.run import Inspection, chosen, inspect_document, repair
-from rttrr_pin.reporting.options import check_targets, flag, outcome, robot, target, xacro, xacro_arguments
+from rttrr_pin.reporting.options import (
+    check_targets,
+    flag,
+    outcome,
+    package,
+    packages_of,
+    robot,
+    target,
+    xacro,
+    xacro_arguments,
+)
 from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json, write_text
+from rttrr_pin.urdf.packages import named_packages
 from rttrr_pin.urdf.parser import read_document
 from rttrr_pin.urdf.reader import model_of
 from rttrr_pin.urdf.sources import Reading, Source, find, several
@@ -28,6 +39,7 @@ from rttrr_pin.urdf.sources import Reading, Source, find, several
 )
 @click.option("--ignore", multiple=True, metavar="ID", help="Leave out checks whose ids begin so. Repeats.")
 @flag("--strict", help="Warnings count as errors for the exit code.")
+@package
 @click.option(
     "--fail-on",
     multiple=True,
@@ -45,6 +57,7 @@ def inspect(
     select: tuple[str, ...],
     ignore: tuple[str, ...],
     strict: bool,
+    package: tuple[str, ...],
     fail_on: tuple[str, ...],
     fix: str | None,
     xacro: bool,
@@ -66,10 +79,10 @@ def inspect(
     check_targets(reports | {"--fix": fix})
     chosen(select, ignore)  # that there are such checks, before the first of many files is read
     console = Output(quiet=quiet or "-" in (*reports.values(), fix), soft_wrap=True)
-    reading = Reading(xacro, xacro_arguments(xacro_arg))
+    reading = Reading(xacro, xacro_arguments(xacro_arg), packages=named_packages(packages_of(package)))
 
     def look(source: Path | Source) -> Inspection:
-        document = read_document(source, reading)
+        document = read_document(source, reading, tolerant=True)
         model_of(document)  # as `load` does: it refuses numbers that overflow
         return inspect_document(document, select=select, ignore=ignore)
 

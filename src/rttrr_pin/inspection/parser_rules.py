@@ -7,6 +7,7 @@ tensor lies nearer to a threshold than the parser's own rounding, no rule can sa
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import lru_cache
@@ -18,7 +19,7 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.inspection.bodies import principal
 from rttrr_pin.urdf.decimals import Number, NumberList
-from rttrr_pin.urdf.document import NO_INERTIAL, UrdfDocument, UrdfInertial, UrdfJoint
+from rttrr_pin.urdf.document import NO_INERTIAL, Placement, UrdfDocument, UrdfInertial, UrdfJoint
 
 EPS = float(np.finfo(np.float64).eps)
 
@@ -121,23 +122,34 @@ def _sorted_moments(tensor: Array, negligible: float = 0.0) -> Array:
     return principal(tensor)[0]
 
 
+CUT_OFF = re.compile(r"\S[\t\n]|[\t\n]( |$)")
+"""In a vector, which urdfdom splits at spaces: a tab or line end that does not lead a number."""
+
+
 def _unparsed(numbers: Iterable[Number], vectors: Iterable[NumberList]) -> bool:
-    """Whether there is a blank behind a number, or numbers are apart by more than spaces, at which urdfdom splits."""
+    """Whether urdfdom takes a number for none: it lets blanks stand before a number, and none behind it."""
     blank_behind = any(number.text != number.text.rstrip() for number in numbers)
-    return blank_behind or any(blank in vector.text for vector in vectors for blank in "\t\r\n")
+    return blank_behind or any(CUT_OFF.search(vector.text) for vector in vectors)
+
+
+def _turn(origin: Placement) -> NumberList:
+    """The angles or the quaternion."""
+    return origin.quaternion or origin.rpy
 
 
 def unparsed_joint(joint: UrdfJoint) -> bool:
     """Whether urdfdom takes a number of the joint for none, although XML allows the blanks around it."""
     numbers = [joint.damping, joint.friction, *(joint.limit or {}).values()]
     numbers += [joint.mimic.multiplier, joint.mimic.offset] if joint.mimic else []
-    vectors = [joint.origin.xyz, joint.origin.rpy] + [joint.axis] * (joint.type not in ("fixed", "floating"))
+    vectors = [joint.origin.xyz, _turn(joint.origin), joint.axis]
     return _unparsed(numbers, vectors)
 
 
-def unparsed_inertial(inertial: UrdfInertial) -> bool:
-    """The same of an <inertial>."""
-    return _unparsed((inertial.mass, *inertial.entries.values()), (inertial.origin.xyz, inertial.origin.rpy))
+def unparsed_inertial(inertial: UrdfInertial) -> str:
+    """What of an <inertial> urdfdom drops for that, and goes on; empty where it reads all."""
+    if _unparsed((inertial.mass,), (inertial.origin.xyz, _turn(inertial.origin))):
+        return "the whole <inertial> is dropped, mass too"
+    return "the tensor is 0" if _unparsed(inertial.entries.values(), ()) else ""
 
 
 def floating_on_moving(document: UrdfDocument) -> Iterator[str]:
@@ -287,3 +299,9 @@ def gazebo_empty(document: UrdfDocument) -> Iterator[str]:
 def kdl_root(document: UrdfDocument) -> Iterator[str]:
     """The root, where it has an <inertial>."""
     return (name for name, _ in inertials(document) if name == document.root)
+
+
+def without_effort(document: UrdfDocument) -> Iterator[str]:
+    """Joints with a <limit> that lacks effort or velocity, before version 1.2 of the format."""
+    limited = ((joint.name, joint.limit) for joint in document.joints.values() if document.version < (1, 2))
+    return (name for name, limit in limited if limit is not None and not {"effort", "velocity"} <= limit.keys())

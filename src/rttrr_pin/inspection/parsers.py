@@ -8,119 +8,32 @@ by their source alone.
 
 from __future__ import annotations
 
-import enum
-from collections.abc import Callable, Collection, Iterator
-from dataclasses import dataclass
+from collections.abc import Collection
 
 from rttrr_pin.inspection import parser_rules as rules
-from rttrr_pin.inspection.structure import LIMITED
-from rttrr_pin.urdf.document import UrdfDocument, UrdfInertial, UrdfJoint
-
-Places = Callable[[UrdfDocument], Iterator[str]]
-
-
-class Behaviour(enum.StrEnum):
-    """What a parser does with a file, from best to worst."""
-
-    ACCEPT = "accept"
-    WARN = "warn"
-    ALTER = "alter"
-    EITHER = "either"
-    REFUSE = "refuse"
-
-
-MEANING = {
-    Behaviour.ACCEPT: "loads the robot as written",
-    Behaviour.WARN: "loads the robot as written, and prints a warning",
-    Behaviour.ALTER: "loads another robot than the one written",
-    Behaviour.EITHER: "the parser's version, or its own rounding, decides",
-    Behaviour.REFUSE: "does not load the file",
-}
-
-
-@dataclass(frozen=True)
-class RuleMatch:
-    """A rule of a parser that applies.
-
-    Attributes:
-        rule: the rule's id.
-        behaviour: what the parser does.
-        name: the link or joint.
-        reason: the rule in a sentence.
-        source: where the parser's source says so.
-    """
-
-    rule: str
-    behaviour: Behaviour
-    name: str
-    reason: str
-    source: str
-
-
-@dataclass(frozen=True)
-class Verdict:
-    """What one parser does with the file.
-
-    Attributes:
-        parser: its name.
-        behaviour: the worst of what its rules say.
-        matches: the rules that apply, and where.
-    """
-
-    parser: str
-    behaviour: Behaviour
-    matches: tuple[RuleMatch, ...]
-
-
-@dataclass(frozen=True)
-class Rule:
-    """What a parser does with something in a file.
-
-    Attributes:
-        id: stable, such as `"mujoco-triangle"`.
-        parsers: those that have the rule.
-        behaviour: what they do then.
-        reason: the rule in a sentence.
-        source: file and function of the parser that says so.
-        places: the links or joints where it applies.
-        at_worst: what they do at worst, where `behaviour` is "either".
-    """
-
-    id: str
-    parsers: tuple[str, ...]
-    behaviour: Behaviour
-    reason: str
-    source: str
-    places: Places
-    at_worst: Behaviour = Behaviour.REFUSE
-
-
-PINOCCHIO, MUJOCO, DRAKE, GAZEBO, KDL, YOURDFPY = PARSERS = (
-    "Pinocchio",
-    "MuJoCo",
-    "Drake",
-    "Gazebo",
-    "KDL",
-    "yourdfpy",
+from rttrr_pin.inspection.parser_faults import FAULT_RULES
+from rttrr_pin.inspection.rule import (
+    DRAKE,
+    GAZEBO,
+    KDL,
+    MEANING,
+    MUJOCO,
+    PARSERS,
+    PINOCCHIO,
+    URDFDOM,
+    YOURDFPY,
+    Behaviour,
+    Rule,
+    RuleMatch,
+    Verdict,
+    inertials,
+    joints,
+    where,
 )
+from rttrr_pin.inspection.structure import LIMITED
+from rttrr_pin.urdf.document import UrdfDocument, UrdfJoint
 
-URDFDOM = (PINOCCHIO, GAZEBO, KDL)
-"""They parse with urdfdom."""
-
-
-def joints(holds: Callable[[UrdfJoint], object]) -> Places:
-    """The joints of which something holds."""
-    return lambda document: (joint.name for joint in document.joints.values() if holds(joint))
-
-
-def inertials(holds: Callable[[UrdfInertial], object], moving: bool = False) -> Places:
-    """The links of whose <inertial> something holds; with `moving`, none that belongs to the world."""
-    return lambda document: (name for name, inertial in rules.inertials(document, moving) if holds(inertial))
-
-
-def where(test: Callable[[UrdfDocument], Iterator[tuple[str, str]]], outcome: str) -> Places:
-    """The links of which a test comes out so."""
-    return lambda document: (name for name, came_out in test(document) if came_out == outcome)
+__all__ = ["MEANING", "PARSERS", "RULES", "Behaviour", "RuleMatch", "Verdict", "verdicts"]
 
 
 def _is_range(joint: UrdfJoint) -> bool:
@@ -139,11 +52,10 @@ RULES = (
          "urdfdom: urdf_parser/src/joint.cpp, parseJoint",
          joints(lambda joint: joint.type in LIMITED and joint.limit is None)),
     Rule("urdfdom-effort", URDFDOM, Behaviour.REFUSE,
-         "a <limit> has no effort or no velocity",
-         "urdfdom: urdf_parser/src/joint.cpp, parseJointLimits",
-         joints(lambda joint: joint.limit is not None and not {"effort", "velocity"} <= joint.limit.keys())),
+         "a <limit> has no effort or no velocity, before version 1.2 of the format",
+         "urdfdom: urdf_parser/src/joint.cpp, parseJointLimits", rules.without_effort),
     Rule("urdfdom-inertial", URDFDOM, Behaviour.ALTER,
-         "a mass or moment with a blank behind it, or an inertial origin with a tab or line end, is dropped",
+         "with a blank behind a mass or a moment, or a tab or line end in its origin, an <inertial> or its tensor is 0",
          "urdfdom: urdf_parser/src/link.cpp, parseInertial", inertials(rules.unparsed_inertial)),
     Rule("urdfdom-joint", URDFDOM, Behaviour.REFUSE,
          "a joint's vector has a tab or line end, or a limit, damping, friction or mimic a blank behind it",
@@ -248,6 +160,7 @@ RULES = (
     Rule("yourdfpy-joint", (YOURDFPY,), Behaviour.ALTER,
          "planar and floating joints do not move, and a planar one counts as two degrees of freedom",
          "yourdfpy: urdf.py, URDF._forward_kinematics_joint and URDF.num_dofs", PLANAR_OR_FLOATING),
+    *FAULT_RULES,
 )  # fmt: skip
 
 

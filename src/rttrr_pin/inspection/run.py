@@ -19,19 +19,24 @@ from rttrr_pin.inspection import physics, plausibility, report, structure
 from rttrr_pin.inspection.bodies import LinkRow, centre_of_mass, tree
 from rttrr_pin.inspection.cases import cases
 from rttrr_pin.inspection.checks import Check, Edit, Finding, Severity, Subject
+from rttrr_pin.inspection.file_faults import FILE_CHECKS
 from rttrr_pin.inspection.parser_rules import merged_links
 from rttrr_pin.inspection.parsers import Verdict, verdicts
 from rttrr_pin.inspection.readings import cause_of
 from rttrr_pin.urdf.document import UrdfDocument
+from rttrr_pin.urdf.parser import read_document
 
 if TYPE_CHECKING:
     from rttrr_pin.robot import Robot
 
-CHECKS = tuple(
-    check
-    for module in (physics, plausibility, structure)
-    for check in vars(module).values()
-    if isinstance(check, Check)
+CHECKS = (
+    tuple(
+        check
+        for module in (physics, plausibility, structure)
+        for check in vars(module).values()
+        if isinstance(check, Check)
+    )
+    + FILE_CHECKS
 )
 """All checks, in the order of their modules and of the lines there, which is that of their ids."""
 
@@ -98,7 +103,7 @@ class Inspection:
 
 
 def inspect(
-    robot: Robot,
+    robot: Robot | str | os.PathLike[str],
     folder: str | os.PathLike[str] | None = None,
     select: Iterable[str] = (),
     ignore: Iterable[str] = (),
@@ -106,8 +111,9 @@ def inspect(
     """Inspect the file behind a robot: its tree and bodies, what is wrong with it, and what other programs do with it.
 
     Args:
-        robot: a robot that was loaded from a file or a text; of one that was loaded from an object, the text that was
-            written from it, `robot.model.urdf`, is inspected.
+        robot: a robot that was loaded from a file or a text; or a source of one, as `load` takes it, which is
+            inspected as far as it goes also where `load` refuses it. Of a robot that was loaded from an object, the
+            text that was written from it, `robot.model.urdf`, is inspected.
         folder: where to look for meshes from; None is the folder that the file was read from.
         select: prefixes of the ids of the checks to run (see docs/inspect.md); none means all.
         ignore: prefixes of ids to leave out.
@@ -117,8 +123,11 @@ def inspect(
 
     Raises:
         InputError: the robot was made from numbers and has no file.
-        UnknownNameError: a prefix fits no check.
+        UnknownNameError: a prefix fits no check; or there is no such file.
+        UrdfError: the file is no URDF at all.
     """
+    if isinstance(robot, str | os.PathLike):
+        return inspect_document(read_document(robot, tolerant=True), folder, select, ignore)
     document = robot.model.document
     if not isinstance(document, UrdfDocument):
         raise InputError(f"robot {robot.name!r} has no URDF text: inspect looks at files; load the robot from one")
@@ -145,7 +154,7 @@ def inspect_document(
             com=centre_of_mass(document, links, mass),
             findings=tuple(sorted(findings, key=lambda finding: (finding.line, finding.id))),
             verdicts=verdicts(document),
-            text=document.text,
+            text=document.file_text,
         )
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import logging
 import warnings
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
@@ -18,14 +18,17 @@ from typing import Any
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.solids import Box, Cylinder, RigidBody, Sphere
+from rttrr_pin.core.solids import Box, Capsule, Cylinder, RigidBody, Solid, Sphere
 from rttrr_pin.inspection.hull import filled_hull
 from rttrr_pin.urdf.document import UrdfLink, UrdfShape
+from rttrr_pin.urdf.packages import find_package
 
 MESH_TYPES = (".stl", ".dae", ".obj", ".ply")
 
 LARGEST_MESH = 64 * 2**20
 """Bytes."""
+
+NO_PACKAGES: Mapping[str, Path] = {}
 
 SMALLEST, LARGEST = 1e-9, 1e9
 """Metres; what is drawn smaller or larger, or elsewhere, is no robot, and its volume may be no float."""
@@ -80,22 +83,23 @@ class Looks:
         return len(self.points) > 0 and not self.missing
 
 
-def looks_of(link: UrdfLink, folder: Path | None) -> Looks:
+def looks_of(link: UrdfLink, folder: Path | None, packages: Mapping[str, Path] = NO_PACKAGES) -> Looks:
     """The geometry of a link.
 
     Args:
         link: the link.
-        folder: where the URDF lies; None for a text, whose meshes cannot be found.
+        folder: where the URDF lies; None for a text.
+        packages: folders by the names of packages; others are looked for.
     """
     clouds: dict[str, list[Array]] = {"visual": [], "collision": []}
     volumes: dict[str, list[float]] = {"visual": [], "collision": []}
     missing, solids = [], dict[str, Filled]()
     for shape in link.shapes:
         solid = _primitive(shape)
-        points, volume = _mesh(shape, folder) if solid is None else (_outline(solid), solid.volume)
+        points, volume = _mesh(shape, folder, packages) if solid is None else (_outline(solid), solid.volume)
         volumes[shape.role].append(volume)
         if len(points) and solid is not None and sum(other.role == shape.role for other in link.shapes) == 1:
-            body = RigidBody.of(solid, 1.0).placed(shape.origin.xyz.floats, shape.origin.rpy.floats)
+            body = RigidBody.of(solid, 1.0).placed(shape.origin.xyz.floats, shape.origin.angles)
             solids[shape.role] = Filled(f"the {shape.role} {shape.tag}", body, True)
         if not len(points) or not SMALLEST < float(np.abs(points).max() + np.abs(shape.origin.p).max()) < LARGEST:
             missing.append(shape.attributes.get("filename", f"<{shape.tag}>"))
@@ -115,22 +119,26 @@ def looks_of(link: UrdfLink, folder: Path | None) -> Looks:
     )
 
 
-def _primitive(shape: UrdfShape) -> Box | Cylinder | Sphere | None:
+SIZES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",), "capsule": ("radius", "length")}
+"""The attributes of solids."""
+
+
+def _primitive(shape: UrdfShape) -> Solid | None:
     """The solid; None where its numbers are none, or its tag is unknown."""
     try:
-        names = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius",)}[shape.tag]
+        names = SIZES[shape.tag]
         sizes = [float(word) for name in names for word in shape.attributes[name].split()]
         if not all(SMALLEST < size < LARGEST for size in sizes):
             return None
         if shape.tag == "box":
             x, y, z = sizes
             return Box((x, y, z))
-        return Sphere(*sizes) if shape.tag == "sphere" else Cylinder(*sizes)
+        return {"sphere": Sphere, "cylinder": Cylinder, "capsule": Capsule}[shape.tag](*sizes)
     except (KeyError, ValueError, TypeError):  # no such tag or attribute; no number; too few or too many numbers
         return None
 
 
-def _outline(solid: Box | Cylinder | Sphere) -> Array:
+def _outline(solid: Solid) -> Array:
     """Points whose hull contains the solid, in its own frame."""
     if isinstance(solid, Box):
         return np.array(list(product(*((-edge / 2, edge / 2) for edge in solid.size))))
@@ -141,7 +149,10 @@ def _outline(solid: Box | Cylinder | Sphere) -> Array:
         return np.concatenate([circle * solid.radius + end for end in ends])
     heights = np.sin(np.linspace(-np.pi / 2, np.pi / 2, AROUND // 2 + 1))
     rings = [circle * np.sqrt(max(1.0 - z * z, 0.0)) + np.array([0.0, 0.0, z]) for z in heights]
-    return np.asarray(np.concatenate(rings) * (solid.radius / np.cos(np.pi / AROUND)))
+    ball = np.asarray(np.concatenate(rings) * (solid.radius / np.cos(np.pi / AROUND)))
+    if isinstance(solid, Capsule):
+        ball = np.concatenate([ball + np.array([0.0, 0.0, end * solid.length / 2]) for end in (-1, 1)])
+    return ball
 
 
 def _hull(role: str, clouds: Iterable[Array]) -> Filled | None:
@@ -155,9 +166,9 @@ def _filled(points: bytes) -> RigidBody | None:
     return filled_hull(np.frombuffer(points).reshape(-1, 3).copy())
 
 
-def _mesh(shape: UrdfShape, folder: Path | None) -> tuple[Array, float]:
+def _mesh(shape: UrdfShape, folder: Path | None, packages: Mapping[str, Path]) -> tuple[Array, float]:
     """The corners of a mesh's hull and the mesh's volume, scaled; no corners where it cannot be read."""
-    path = None if folder is None or shape.tag != "mesh" else find_mesh(shape.attributes.get("filename", ""), folder)
+    path = None if shape.tag != "mesh" else find_mesh(shape.attributes.get("filename", ""), folder, packages)
     try:
         scale = np.array([float(word) for word in shape.attributes.get("scale", "1 1 1").split()])
     except ValueError:
@@ -202,16 +213,19 @@ def _enclosed(triangles: Array) -> float:
     return abs(float(np.einsum("ij,ij->", a, np.cross(b, c)))) / 6.0
 
 
-def find_mesh(filename: str, folder: Path) -> Path | None:
+def find_mesh(filename: str, folder: Path | None, packages: Mapping[str, Path] = NO_PACKAGES) -> Path | None:
     """The file that a URDF names.
 
-    `package://name/rest` is looked for as `name/rest` in the URDF's folder and in those above it; anything else from
-    the URDF's folder.
+    `package://name/rest` is looked for in the package (`urdf/packages.py`), and as `name/rest` in the URDF's folder and
+    in those above it; anything else from the URDF's folder.
     """
+    candidates: list[Path] = []
     if filename.startswith(("package://", "model://")):
         rest = filename.split("://", 1)[1]
-        candidates = [up / rest for up in (folder, *folder.parents)]
-    else:
+        package = find_package(rest.partition("/")[0], folder, packages)
+        candidates += [] if package is None else [package / rest.partition("/")[2]]
+        candidates += [] if folder is None else [up / rest for up in (folder, *folder.parents)]
+    elif folder is not None:
         candidates = [folder / filename.removeprefix("file://")]
     for path in candidates:
         try:

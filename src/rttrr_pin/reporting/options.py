@@ -60,6 +60,17 @@ xacro = group(
     ),
 )
 friction = flag("--friction", help="Take damping and friction of <dynamics> into tau.")
+package = click.option(
+    "--package",
+    multiple=True,
+    metavar="NAME=FOLDER",
+    help="Where a ROS package lies that the file names; others are looked for by their package.xml. Repeats.",
+)
+reading = group(
+    flag("--lenient", help="Go on where the file does not say what a number is, and tell what is assumed."),
+    flag("--no-mimic", help="Let joints with <mimic> move by themselves, as Pinocchio does unless it is asked."),
+    package,
+)
 quiet = flag("--quiet", "-q", help="Print nothing but errors.")
 outcome = group(target("--json", "the outcome as JSON"), quiet)
 
@@ -87,6 +98,17 @@ def numbers_of(option: str, text: str, count: int) -> list[float]:
     for fault in filter(None, map(beyond_doubles, words)):
         raise InputError(f"{option}: {fault}")
     return numbers
+
+
+def packages_of(words: Iterable[str]) -> dict[str, str]:
+    """Folders by the names of packages."""
+    packages = {}
+    for word in words:
+        name, equals, folder = word.partition("=")
+        if not (name and equals and folder):
+            raise InputError(f"--package is {word!r}: expected NAME=FOLDER, such as my_description=ws/my_description")
+        packages[name] = folder
+    return packages
 
 
 def check_targets(targets: Mapping[str, str | Path | None], sources: Iterable[str | Path] = ()) -> None:

@@ -6,8 +6,9 @@ is converted before it is asked for: a number is a text that becomes a double or
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from fractions import Fraction
 from functools import cached_property
 from pathlib import Path
 from typing import TypeVar
@@ -16,8 +17,9 @@ import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joints import JOINT_TYPES
-from rttrr_pin.core.solids import rotation
+from rttrr_pin.core.solids import angles_of, rotation
 from rttrr_pin.urdf.decimals import Number, NumberList
+from rttrr_pin.urdf.faults import Fault, Level
 
 T = TypeVar("T")
 
@@ -33,6 +35,17 @@ def symmetric(entries: Mapping[str, T]) -> tuple[tuple[T, T, T], ...]:
     return (xx, xy, xz), (xy, yy, yz), (xz, yz, zz)
 
 
+def rows_of_quaternion(quaternion: Sequence[Fraction]) -> tuple[tuple[Fraction, ...], ...]:
+    """The rotation matrix of a quaternion (x, y, z, w) of any length but 0: rational, so that nothing is rounded."""
+    x, y, z, w = quaternion
+    s = 2 / (x * x + y * y + z * z + w * w)
+    return (
+        (1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w)),
+        (s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w)),
+        (s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y)),
+    )
+
+
 @dataclass(frozen=True, eq=False)
 class Placement:
     """An <origin>, the identity where there is none.
@@ -40,10 +53,12 @@ class Placement:
     Attributes:
         xyz: the origin of the frame in the frame around it [m].
         rpy: its angles, see `rotation` [rad].
+        quaternion: (x, y, z, w), of any length, in place of angles; None where there are angles.
     """
 
     xyz: NumberList = ZEROS
     rpy: NumberList = ZEROS
+    quaternion: NumberList | None = None
 
     @cached_property
     def p(self) -> Array:
@@ -53,11 +68,18 @@ class Placement:
     @cached_property
     def R(self) -> Array:
         """Maps vectors of the frame to the frame around it, (3, 3)."""
+        if self.quaternion is not None:
+            return np.array(rows_of_quaternion([Fraction(x) for x in self.quaternion.floats]), dtype=np.float64)
         return rotation(self.rpy.floats) + 0.0  # -0.0, of -sin(0), becomes 0.0
+
+    @property
+    def angles(self) -> tuple[float, ...]:
+        """Roll, pitch and yaw, also of a quaternion, then rounded [rad]."""
+        return self.rpy.floats if self.quaternion is None else angles_of(self.R)
 
     @cached_property
     def rotated(self) -> bool:
-        """Whether R is computed from angles that are not zero."""
+        """Whether R is computed from angles or a quaternion, and is not the identity."""
         return not np.array_equal(self.R, np.eye(3))
 
 
@@ -188,27 +210,61 @@ class UrdfJoint:
         return {key: float(number) for key, number in (self.limit or {}).items()}
 
 
+@dataclass(frozen=True, slots=True)
+class UrdfTransmission:
+    """A <transmission>.
+
+    Attributes:
+        name: its name.
+        line: its line.
+        type: what kind it is; empty where the file does not say.
+        joint: that it drives; empty where none is named.
+        actuator: that drives it; empty where none is named.
+    """
+
+    name: str
+    line: int
+    type: str
+    joint: str
+    actuator: str
+
+
 @dataclass(frozen=True, eq=False)
 class UrdfDocument:
     """A robot as the file writes it.
 
     Attributes:
         source: what to call the file in messages.
-        text: the file's text.
+        text: of the robot as it was read, for other programs: the file's, or what was assumed written out.
+        file_text: the file's text.
         folder: where the file lies, to find meshes from; None for a text.
         name: the robot's name.
+        version: of the format, such as (1, 0).
         links: by name, in the order of the file.
         joints: by name, in the order of the file.
+        transmissions: in the order of the file.
+        faults: what is wrong with the file.
+        packages: folders of packages that meshes are named by.
         made_from: the class of the object that the text was written from; empty where there is a file.
     """
 
     source: str
     text: str
+    file_text: str
     folder: Path | None
     name: str
+    version: tuple[int, int]
     links: dict[str, UrdfLink]
     joints: dict[str, UrdfJoint]
+    transmissions: tuple[UrdfTransmission, ...] = ()
+    faults: tuple[Fault, ...] = ()
+    packages: Mapping[str, Path] = field(default_factory=dict)
     made_from: str = ""
+
+    @property
+    def remarks(self) -> tuple[Fault, ...]:
+        """What a user of the model must know: what was assumed, and what is not modelled."""
+        return tuple(fault for fault in self.faults if fault.level is not Level.NOTE or fault.kind == "not-modelled")
 
     @cached_property
     def carried_by(self) -> dict[str, UrdfJoint]:

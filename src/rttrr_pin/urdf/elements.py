@@ -1,15 +1,17 @@
-"""XML text to elements that know their line: what is no plain, complete XML document in UTF-8 is refused here."""
+"""XML text to elements that know their line, and that log what is wrong with them."""
 
 from __future__ import annotations
 
 import io
 import re
+from collections.abc import Iterable
 from typing import Any
 
 from lxml import etree
 
-from rttrr_pin.errors import UrdfError, shortened
+from rttrr_pin.errors import UrdfError, nearest, shortened
 from rttrr_pin.urdf.decimals import NUMBER, Number, NumberList, beyond_doubles
+from rttrr_pin.urdf.faults import Fault, Level, Log
 from rttrr_pin.urdf.sources import Source
 
 UTF_8 = ("UTF-8", "UTF8", "ASCII", "US-ASCII")
@@ -17,74 +19,144 @@ UTF_8 = ("UTF-8", "UTF8", "ASCII", "US-ASCII")
 BLANKS = " \t\r\n"
 """The blanks of XML, no others (Python knows more)."""
 
+LET_THROUGH = {
+    "ERR_UNKNOWN_VERSION": ("declaration", 'the XML declaration names another version: write version="1.0"'),
+    "ERR_VERSION_MISSING": ("declaration", 'the XML declaration names no version: write version="1.0"'),
+    "ERR_RESERVED_XML_NAME": ("declaration", "an XML declaration stands behind other text: move it to the start"),
+    "ERR_HYPHEN_IN_COMMENT": ("comment", "a comment holds two hyphens: write one"),
+    "ERR_DOCUMENT_END": ("behind", "something stands behind </robot>, which no parser reads"),
+    "NS_ERR_UNDEFINED_NAMESPACE": ("namespace", "the prefix is not declared"),
+}
+"""Errors of libxml2 that leave the tree whole: the kind of the fault, and its message."""
+
+MOST_HINTS = 20
+"""Names that are looked for among those that are known."""
+
+QUOTED_NUMBERS = re.compile(rb"""(["'])([0-9eE+. \t\r\n-]*)\1""")
+
 
 class Element:
-    """An XML element with what is needed to say where it is."""
+    """An XML element with what is needed to say where it is.
 
-    def __init__(self, xml: Any, source: str, label: str) -> None:
-        self.xml, self.source, self.label = xml, source, label
+    What is read in place of a number or element that is missing or wrong is written into the element too, so that the
+    tree says what was assumed.
+    """
+
+    def __init__(self, xml: Any, log: Log, tag: str = "robot", name: str = "") -> None:
+        self.xml, self.log, self.tag, self.name = xml, log, tag, name
 
     @property
     def line(self) -> int:
         """Its line in the file."""
-        return int(self.xml.sourceline)
+        return int(self.xml.sourceline or 0)
 
-    def error(self, message: str) -> UrdfError:
-        """An error at this element's line."""
-        return UrdfError(message, source=self.source, line=self.line, element=self.label)
+    def fault(self, kind: str, level: Level, message: str, assumed: str = "") -> None:
+        """Log a fault at this element's line."""
+        self.log.faults.append(Fault(kind, level, self.tag, self.name, self.line, shown(self.xml), message, assumed))
+
+    def assume(self, kind: str, message: str, assumed: str) -> None:
+        """Log what a number depends on, and what is read in its place."""
+        self.fault(kind, Level.ASSUMPTION, message, assumed)
+
+    def error(self, kind: str, message: str, left_out: str) -> None:
+        """Log what makes no robot, and what is left out."""
+        self.fault(kind, Level.ERROR, message, left_out)
+
+    def note(self, kind: str, message: str) -> None:
+        """Log what no number depends on."""
+        self.fault(kind, Level.NOTE, message)
+
+    def nearest(self, got: str, known: Iterable[str]) -> str:
+        """The hint that follows an unknown name; none after many, since each looks through all names."""
+        self.log.hints += 1
+        return nearest(got, sorted(known)) if self.log.hints <= MOST_HINTS else "check its name"
 
     def children(self, tag: str) -> list[Element]:
         """The children of that tag."""
-        return [Element(xml, self.source, tag) for xml in self.xml.findall(tag)]
+        return [Element(xml, self.log, self.tag, self.name) for xml in self.xml.findall(tag)]
 
-    def child(self, tag: str) -> Element | None:
-        """The only child of that tag, if there is one: of several, parsers silently take the first or the last."""
-        children = self.xml.findall(tag)
+    def child(self, tag: str, used: bool = True) -> Element | None:
+        """The only child of that tag, if there is one: of several, the first, as most parsers have it."""
+        children = self.children(tag)
         if len(children) > 1:
-            raise self.error(f"has {len(children)} <{tag}> elements, expected at most one: remove the others")
-        return Element(children[0], self.source, self.label) if children else None
+            message = f"has {len(children)} <{tag}> elements, expected at most one: remove the others"
+            if not used or len({_content(child.xml) for child in children}) == 1:
+                self.note("twice", message)
+            else:
+                self.assume("twice", message, f"the first <{tag}>")
+            for child in children[1:]:
+                child.remove()
+        return children[0] if children else None
 
-    def needed(self, tag: str, why: str) -> Element:
-        """The child of that tag, which must be there."""
-        child = self.child(tag)
-        if child is None:
-            raise self.error(f"has no <{tag}>, {why}")
-        return child
+    def added(self, tag: str, **attributes: str) -> Element:
+        """A new child."""
+        self.log.changed = True
+        xml = etree.SubElement(self.xml, tag, attributes)
+        return Element(xml, self.log, self.tag, self.name)
 
-    def text(self, attribute: str, why: str) -> str:
-        """An attribute that must be there and not be empty."""
-        value = self.xml.get(attribute)
-        if value is None or not value.strip():
-            raise self.error(f"<{self.xml.tag}> has no {attribute}, {why}")
-        return str(value)
+    def write(self, **attributes: str) -> None:
+        """Set attributes to what was assumed."""
+        self.log.changed = True
+        self.xml.attrib.update(attributes)
 
-    def number(self, attribute: str, default: str | None = None) -> Number:
-        """A finite decimal number; errors as those of `numbers`."""
-        return Number(self.numbers(attribute, 1, default).text)
+    def remove(self) -> None:
+        """Take the element out."""
+        self.log.changed = True
+        self.xml.getparent().remove(self.xml)
 
-    def numbers(self, attribute: str, count: int, default: str | None = None) -> NumberList:
+    def text(self, attribute: str) -> str:
+        """An attribute; empty where there is none."""
+        value = str(self.xml.get(attribute, ""))
+        return value if value.strip() else ""
+
+    def number(self, attribute: str, default: str | None = None, fallback: str = "0") -> Number:
+        """A finite decimal number; see `numbers`."""
+        return Number(self.numbers(attribute, 1, default, fallback).text)
+
+    def numbers(self, attribute: str, count: int, default: str | None, fallback: str) -> NumberList:
         """`count` finite decimal numbers.
 
-        Raises:
-            UrdfError: there are more or fewer, or one of them is not a number that float64 can hold.
+        Args:
+            attribute: that holds them.
+            count: how many there should be.
+            default: what the format says where there is none; None where it wants one.
+            fallback: what is read where there is none, or what is there is no number.
         """
+        problem = self.problem(attribute, count, default)
+        if not problem:
+            return NumberList(self.xml.get(attribute, default))
+        self.assume("number", problem, f'<{self.xml.tag} {attribute}="{fallback}">')
+        self.write(**{attribute: fallback})
+        return NumberList(fallback)
+
+    def problem(self, attribute: str, count: int = 1, default: str | None = None) -> str:
+        """Why an attribute is not so many numbers; empty if it is."""
         text = self.xml.get(attribute, default)
         if text is None:
-            raise self.error(f'<{self.xml.tag}> has no {attribute}: write {attribute}="..." with the value')
+            return f'<{self.xml.tag}> has no {attribute}: write {attribute}="..." with the value'
         words = re.split(f"[{BLANKS}]+", text.strip(BLANKS)) if text.strip() else []
         where = f'<{self.xml.tag} {attribute}="{shortened(text)}">'
         if len(words) != count:
-            raise self.error(f"{where} has {len(words)} values, expected {count}{_hint(text)}")
-        for word in words:
-            self._check_number(word, where)
-        return NumberList(text)
+            return f"{where} has {len(words)} values, expected {count}{_hint(text)}"
+        return next((f"{where}: {problem}" for problem in map(_problem, words) if problem), "")
 
-    def _check_number(self, word: str, where: str) -> None:
-        shown = shortened(word)
-        if not NUMBER.fullmatch(word):
-            raise self.error(f"{where}: {shown!r} is not a decimal number{_hint(word)}")
-        if fault := beyond_doubles(word):
-            raise self.error(f"{where}: {fault}")
+
+def shown(xml: Any) -> str:
+    """The tag as the file writes it."""
+    word = xml.tag.rpartition("}")[2]
+    return shortened(f"{xml.prefix}:{word}" if xml.prefix else word)
+
+
+def _content(xml: Any) -> object:
+    """What two equal elements share."""
+    return xml.tag, tuple(sorted(xml.attrib.items())), tuple(map(_content, xml.iterchildren("{*}*")))
+
+
+def _problem(word: str) -> str:
+    """Why a word is no number that float64 can hold; empty if it is one."""
+    if not NUMBER.fullmatch(word):
+        return f"{shortened(word)!r} is not a decimal number{_hint(word)}"
+    return beyond_doubles(word)
 
 
 def _hint(text: str) -> str:
@@ -98,7 +170,7 @@ def _hint(text: str) -> str:
     return ": write digits with a point"
 
 
-def parse_xml(source: Source) -> Any:
+def parse_xml(source: Source, log: Log) -> Any:
     """The root element of an XML text, with the line of each element; comments and processing instructions are gone.
 
     The line is where the start tag ends; beyond line 65,534 libxml2 may be off by the length of the text behind it.
@@ -113,21 +185,50 @@ def parse_xml(source: Source) -> Any:
     # lxml's defaults are spelt out where a file could reach for others, or grow: no DTD, no network, no huge trees.
     parser = etree.XMLParser(
         encoding="utf-8", resolve_entities=False, no_network=True, load_dtd=False, huge_tree=False,
-        remove_comments=True, remove_pis=True,
+        remove_comments=True, remove_pis=True, recover=True,
     )  # fmt: skip
     try:
-        root = etree.parse(io.BytesIO(source.text), parser).getroot()
-    except etree.XMLSyntaxError as error:
-        if b"<!DOCTYPE" in _without_comments(source.text):
-            raise _doctype(source) from None
-        line = error.lineno or None
-        raise UrdfError(
-            f"is no well-formed XML: {error.msg or 'it cannot be parsed'}", source=source.name, line=line
-        ) from None
+        root = etree.parse(io.BytesIO(_with_blanks(source.text)), parser).getroot()
+    except etree.XMLSyntaxError:
+        root = None
+    if parser.error_log and b"<!DOCTYPE" in _without_comments(source.text):
+        raise _doctype(source)
+    _log_errors(parser.error_log, root, log)
+    if root is None:
+        raise UrdfError("is no well-formed XML: it cannot be parsed", source=source.name)
     info = root.getroottree().docinfo
     if info.doctype or info.internalDTD is not None:
         raise _doctype(source)
     return root
+
+
+def _log_errors(errors: Any, root: Any, log: Log) -> None:
+    """What libxml2 says, as faults; it goes on behind an error, and the tree is whole after those in `LET_THROUGH`."""
+    seen = set[tuple[str, int]]()
+    for error in errors:
+        if error.level_name == "WARNING" or (error.domain_name == "NAMESPACE" and error.type_name not in LET_THROUGH):
+            continue  # an odd or empty name of a namespace
+        if root is None or error.type_name not in LET_THROUGH:
+            message = error.message or "it cannot be parsed"
+            raise UrdfError(f"is no well-formed XML: {message}", source=log.source, line=error.line or None)
+        kind, message = LET_THROUGH[error.type_name]
+        if (kind, error.line) not in seen:
+            log.faults.append(Fault(kind, Level.NOTE, "robot", "", error.line, "", message))
+        seen.add((kind, error.line))
+
+
+def _with_blanks(text: bytes) -> bytes:
+    """The text with tabs and line ends between numbers written so that they are kept.
+
+    XML makes spaces of them, but parsers of URDF do not. The line ends are put behind the closing quotation mark again.
+    """
+
+    def kept(match: re.Match[bytes]) -> bytes:
+        value = match[2].replace(b"\r\n", b"\n").replace(b"\r", b"\n")
+        lines = match[2].count(b"\n")
+        return match[1] + value.replace(b"\t", b"&#9;").replace(b"\n", b"&#10;") + match[1] + b"\n" * lines
+
+    return QUOTED_NUMBERS.sub(kept, text)
 
 
 def _check_encoding(source: Source) -> None:

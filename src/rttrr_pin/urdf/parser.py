@@ -4,33 +4,66 @@ Nothing is guessed. What the format itself defines where it is left out is taken
 an <inertial>, is the identity (so the centre of mass is at the link's origin), lower and upper limits are 0, a
 multiplier is 1. One default is refused all the same: a joint that moves must name its <axis>, since 1 0 0 is so rarely
 meant.
+
+A fault does not end the reading: it is logged with what was read in its place (`faults.py`), and in the end the log
+decides. The tree of elements is changed to what was assumed, so that other programs can be handed the same robot.
 """
 
 from __future__ import annotations
 
+import re
 from collections import Counter
+from collections.abc import Collection, Iterable, Mapping
+from dataclasses import replace
 from typing import Any
 
+from lxml import etree
+
 from rttrr_pin.core.joints import JOINT_TYPES, JointType
-from rttrr_pin.errors import nearest, shortened
+from rttrr_pin.errors import UrdfError, shortened
 from rttrr_pin.urdf.decimals import Number, NumberList
-from rttrr_pin.urdf.document import Placement, UrdfDocument, UrdfInertial, UrdfJoint, UrdfLink, UrdfMimic, UrdfShape
+from rttrr_pin.urdf.document import (
+    ENTRIES,
+    Placement,
+    UrdfDocument,
+    UrdfInertial,
+    UrdfJoint,
+    UrdfLink,
+    UrdfMimic,
+    UrdfShape,
+    UrdfTransmission,
+)
 from rttrr_pin.urdf.elements import Element, parse_xml
+from rttrr_pin.urdf.faults import Log
 from rttrr_pin.urdf.sources import AS_IT_STANDS, AnySource, Reading, find
-from rttrr_pin.urdf.vocabulary import ATTRIBUTES, check_words
+from rttrr_pin.urdf.vocabulary import ATTRIBUTES, LIMITS_1_2, check_words, not_modelled
 
 SUPPORTED = tuple(JOINT_TYPES)
+
+VERSIONS = ((1, 0), (1, 1), (1, 2))
+"""Of the format: 1.1 brought quat_xyzw, 1.2 limits of acceleration, deceleration and jerk."""
 
 LONGEST_CHAIN = 100
 """Joints that follow one another; to follow a chain takes time with the square of its length."""
 
+ASKED = {
+    "dynamics": ("damping", "friction"),
+    "calibration": ("rising", "falling"),
+    "safety_controller": ("k_velocity", "k_position", "soft_lower_limit", "soft_upper_limit"),
+}
+"""Elements of joints in which urdfdom wants numbers: one of those of <dynamics>, k_velocity, and all that are there."""
 
-def read_document(source: AnySource, reading: Reading = AS_IT_STANDS) -> UrdfDocument:
+UNLIMITED = "1e9"
+"""What is written for a limit that the file does not set, and urdfdom asks for."""
+
+
+def read_document(source: AnySource, reading: Reading = AS_IT_STANDS, tolerant: bool = False) -> UrdfDocument:
     """Read and check a robot's file.
 
     Args:
         source: a name, a path, a text, ...: see `sources.py`.
         reading: what the user allows.
+        tolerant: whether to go on with what is left of any file, to list its faults.
 
     Raises:
         UnknownNameError: there is no such robot or file.
@@ -39,97 +72,183 @@ def read_document(source: AnySource, reading: Reading = AS_IT_STANDS) -> UrdfDoc
             and fix.
     """
     file = find(source, reading)
-    root = parse_xml(file)
-    check_words(root, file.name)
-    robot = Element(root, file.name, "robot")
-    name = robot.text("name", 'which URDF requires: write <robot name="...">')
+    log = Log(file.name, reading.lenient)
+    root = parse_xml(file, log)
+    check_words(root, log)
+    robot = Element(root, log)
+    for follower in root.findall("joint/mimic") if not reading.mimic else ():
+        Element(follower, log).remove()
+    name, version = _name(robot), _version(robot)
     links, joints = (_by_name(robot, tag) for tag in ("link", "joint"))
     if not links:
-        raise robot.error("has no <link>: a robot needs one at least")
-    document = UrdfDocument(
+        raise UrdfError("has no <link>: a robot needs one at least", source=file.name, line=robot.line, element="robot")
+    read_links = {name: _link(name, link, version) for name, link in links.items()}
+    found = ((name, _joint(name, joint, version)) for name, joint in joints.items())
+    read_joints = {name: joint for name, joint in found if joint is not None}
+    _check_tree(read_links, read_joints, robot, joints)
+    _check_mimics(read_joints, joints)
+    not_modelled(root, log)
+    _check_asked(robot, joints)
+    transmissions = _transmissions(robot, joints)
+    if not tolerant:
+        log.check()
+    file_text = file.text.decode("utf-8-sig")
+    rewritten = log.changed and (reading.lenient or not reading.mimic)
+    return UrdfDocument(
         source=file.name,
-        text=file.text.decode("utf-8-sig"),
+        text=etree.tostring(root, encoding="unicode") if rewritten else file_text,
+        file_text=file_text,
         folder=file.folder,
         name=name,
-        links={name: _link(name, link) for name, link in links.items()},
-        joints={name: _joint(name, joint) for name, joint in joints.items()},
+        version=version,
+        links=read_links,
+        joints=read_joints,
+        transmissions=transmissions,
+        faults=tuple(log.faults),
+        packages=reading.packages,
         made_from=file.made_from,
     )
-    _check_tree(document, robot, joints)
-    _check_mimics(document, joints)
-    return document
+
+
+def _name(robot: Element) -> str:
+    """The robot's name; nothing depends on it."""
+    name = robot.text("name")
+    if not name:
+        kind, has = ("name", "an empty") if "name" in robot.xml.attrib else ("unnamed", "no")
+        robot.note(kind, f'<robot> has {has} name, and URDF requires one: write <robot name="...">')
+        robot.write(name="robot")
+    return name or "robot"
+
+
+def _version(robot: Element) -> tuple[int, int]:
+    """The version of the format, 1.0 where none is written; of another, what is known is read."""
+    text = robot.xml.get("version", "1.0")
+    match = re.fullmatch(r"\s*([0-9]{1,9})\.([0-9]{1,9})\s*", text)
+    version = (int(match[1]), int(match[2])) if match else None
+    if version is not None and version in VERSIONS:
+        return version
+    message = f"<robot version={shortened(text)!r}>: URDF has the versions 1.0, 1.1 and 1.2; write one of them"
+    newest = VERSIONS[-1]
+    robot.assume("version", message, f"version {newest[0]}.{newest[1]}")
+    robot.write(version=f"{newest[0]}.{newest[1]}")
+    return newest
 
 
 def _by_name(robot: Element, tag: str) -> dict[str, Element]:
-    """The links or joints, labelled by their names, which differ."""
+    """The links or joints by their names, which differ."""
     elements = robot.children(tag)
-    names = [element.text("name", "which URDF requires") for element in elements]
-    counts = Counter(names)
-    for name, element in zip(names, elements, strict=True):
-        element.label = f'{tag} "{shortened(name)}"'
-        if counts[name] > 1:
-            raise element.error(f"the name stands {counts[name]} times: give each its own")
-    return dict(zip(names, elements, strict=True))
+    named: dict[str, Element] = {}
+    counts = Counter(element.text("name") for element in elements)
+    for element in elements:
+        element.tag, element.name = tag, element.text("name")
+        if not element.name:
+            element.error("name", f"<{tag}> has no name, which URDF requires", "the element is left out")
+        elif element.name not in named:
+            named[element.name] = element
+            if (times := counts[element.name]) > 1:
+                element.error("name", f"the name stands {times} times: give each its own", "the first is read")
+    return named
 
 
-def _link(name: str, link: Element) -> UrdfLink:
+def _link(name: str, link: Element, version: tuple[int, int]) -> UrdfLink:
     inertial = link.child("inertial")
-    shapes = [_shape(shape) for role in ("visual", "collision") for shape in link.xml.findall(role)]
+    shapes = [_shape(shape, version) for role in ("visual", "collision") for shape in link.xml.findall(role)]
     return UrdfLink(
         name=name,
         line=link.line,
-        inertial=None if inertial is None else _inertial(inertial),
+        inertial=None if inertial is None else _inertial(inertial, version),
         shapes=tuple(shape for shape in shapes if shape is not None),
     )
 
 
-def _inertial(inertial: Element) -> UrdfInertial:
-    """Mass, centre of mass and tensor are all there, and are numbers."""
-    origin = _placement(inertial)
-    mass = inertial.needed("mass", 'which dynamics need: write <mass value="..."/> in kg').number("value")
-    tensor = inertial.needed("inertia", "which dynamics need: write its six entries in kg m^2")
-    return UrdfInertial(origin, mass, {name: tensor.number(name) for name in ATTRIBUTES["inertia"]})
+def _inertial(inertial: Element, version: tuple[int, int]) -> UrdfInertial | None:
+    """Mass, centre of mass and tensor; None where there is no mass."""
+    origin = _placement(inertial, version)
+    mass, tensor = inertial.child("mass"), inertial.child("inertia")
+    problem = "has no <mass>, which dynamics need" if mass is None else mass.problem("value")
+    if mass is None or problem:
+        at = mass or inertial
+        fix = ': write <mass value="..."/> in kg' if mass is None else ""
+        at.assume("mass", problem + fix, "no <inertial>: a link without mass")
+        inertial.remove()
+        return None
+    if tensor is None:
+        message = "has no <inertia>, which dynamics need: write its six entries in kg m^2"
+        inertial.assume("inertia", message, "a point mass: the six entries are 0")
+        tensor = inertial.added("inertia", **dict.fromkeys(ENTRIES, "0"))
+    for entry in ENTRIES:
+        if entry not in tensor.xml.attrib:
+            tensor.assume("inertia", tensor.problem(entry), f'{entry}="0"')
+            tensor.write(**{entry: "0"})
+    return UrdfInertial(origin, mass.number("value"), {name: tensor.number(name) for name in ENTRIES})
 
 
-def _placement(element: Element) -> Placement:
+def _placement(element: Element, version: tuple[int, int]) -> Placement:
     origin = element.child("origin")
     if origin is None:
         return Placement()
-    return Placement(origin.numbers("xyz", 3, "0 0 0"), origin.numbers("rpy", 3, "0 0 0"))
+    xyz = origin.numbers("xyz", 3, "0 0 0", "0 0 0")
+    if "quat_xyzw" not in origin.xml.attrib:
+        return Placement(xyz, origin.numbers("rpy", 3, "0 0 0", "0 0 0"))
+    if version < (1, 1):
+        message = "<origin> has an attribute quat_xyzw, which URDF has from version 1.1 on"
+        origin.assume("quaternion", f'{message}: write <robot version="1.1">', "version 1.1")
+        Element(origin.xml.getroottree().getroot(), origin.log).write(version="1.1")
+    if "rpy" in origin.xml.attrib:
+        message = "<origin> has both rpy and quat_xyzw: write one of them"
+        origin.assume("rotations", message, "quat_xyzw")
+        origin.log.changed = True
+        del origin.xml.attrib["rpy"]
+    quaternion = origin.numbers("quat_xyzw", 4, None, "0 0 0 1")
+    if not any(number.exact for number in quaternion.each):
+        message = "its quat_xyzw is 0 0 0 0, which is no rotation: write a unit quaternion"
+        origin.assume("quaternion", message, "0 0 0 1, no rotation")
+        origin.write(quat_xyzw="0 0 0 1")
+        quaternion = NumberList("0 0 0 1")
+    return Placement(xyz, quaternion=quaternion)
 
 
-def _shape(xml: Any) -> UrdfShape | None:
+def _shape(xml: Any, version: tuple[int, int]) -> UrdfShape | None:
     """A shape; None where its element is empty or its placement is no placement, which dynamics do not depend on."""
     shape = next((tag for tag in xml.findall("geometry/*") if isinstance(tag.tag, str)), None)
-    attributes = {} if (origin := xml.find("origin")) is None else origin.attrib
-    xyz, rpy = (NumberList(attributes.get(key, "0 0 0")) for key in ("xyz", "rpy"))
-    try:
-        placed = len(xyz.floats) == len(rpy.floats) == 3
-    except ValueError:
-        placed = False
-    if shape is None or not placed:
+    if shape is None:
         return None
-    return UrdfShape(xml.tag, shape.tag, dict(shape.attrib), Placement(xyz, rpy))
+    draft = Element(etree.Element(xml.tag), Log(""))
+    if (origin := xml.find("origin")) is not None:
+        words = ATTRIBUTES["origin"] if version >= (1, 1) else ("xyz", "rpy")
+        draft.added("origin", **{key: origin.get(key) for key in words if key in origin.attrib})
+    placement = _placement(draft, version)
+    return None if draft.log.faults else UrdfShape(xml.tag, shape.tag, dict(shape.attrib), placement)
 
 
-def _joint(name: str, joint: Element) -> UrdfJoint:
-    type_name = joint.text("type", f"expected one of {', '.join(SUPPORTED)}")
+def _joint(name: str, joint: Element, version: tuple[int, int]) -> UrdfJoint | None:
+    """A joint; None where it joins nothing, or in no way that is known."""
+    left_out = "the joint is left out"
+    type_name = joint.text("type")
     if type_name not in SUPPORTED:
-        raise joint.error(f"type {type_name!r} is not supported: {nearest(type_name, SUPPORTED)}")
+        what = f"type {type_name!r} is not supported" if type_name else "<joint> has no type"
+        fix = joint.nearest(type_name, SUPPORTED) if type_name else f"expected one of {', '.join(SUPPORTED)}"
+        joint.error("joint", f"{what}: {fix}", left_out)
+        return None
     joint_type = JOINT_TYPES[type_name]
-    parent, child = (
-        joint.needed(tag, "which every joint needs").text("link", "expected a link's name")
-        for tag in ("parent", "child")
-    )
+    ends = []
+    for tag in ("parent", "child"):
+        element = joint.child(tag)
+        link = "" if element is None else element.text("link")
+        if not link:
+            has = f"has no <{tag}>, which every joint needs" if element is None else f"<{tag}> has no link"
+            joint.error("joint", f'{has}: write <{tag} link="..."/>', left_out)
+            return None
+        ends.append(link)
     return UrdfJoint(
         name=name,
         line=joint.line,
         type=type_name,
-        parent=parent,
-        child=child,
-        origin=_placement(joint),
+        parent=ends[0],
+        child=ends[1],
+        origin=_placement(joint, version),
         axis=_axis(joint, joint_type),
-        limit=_limit(joint, joint_type),
+        limit=_limit(joint, joint_type, version),
         mimic=_mimic(joint, joint_type),
         **_dynamics(joint),
     )
@@ -147,102 +266,233 @@ def _dynamics(joint: Element) -> dict[str, Number]:
         if dynamics is not None and key in dynamics.xml.attrib:
             numbers[key] = dynamics.number(key)
             if float(numbers[key]) < 0.0:
-                raise dynamics.error(f"{key} is {numbers[key].text}: expected a number that is not negative")
+                message = f"{key} is {numbers[key].text}: expected a number that is not negative"
+                dynamics.assume("dynamics", message, f"{key} 0")
+                dynamics.write(**{key: "0"})
+                numbers[key] = Number("0")
     return numbers
 
 
 def _axis(joint: Element, joint_type: JointType) -> NumberList:
-    """The axis of a joint that has one; what is written for another joint must be numbers all the same."""
+    """The axis of a joint that has one; 1 0 0 where the file does not say, or +z for a planar joint."""
+    axis = joint.child("axis", used=_has_direction(joint_type))
     if not _has_direction(joint_type):
-        unused = joint.child("axis")
-        return NumberList("1 0 0") if unused is None else unused.numbers("xyz", 3)
-    axis = joint.needed("axis", 'which a joint that moves needs: write <axis xyz="..."/>')
-    vector = axis.numbers("xyz", 3)
+        if axis is not None and (problem := axis.problem("xyz", 3)):
+            axis.note("unused", problem)
+        return NumberList("1 0 0")
+    default = "0 0 1" if joint_type.axis_direction else "1 0 0"
+    if axis is None:
+        message = 'has no <axis>, which a joint that moves needs: write <axis xyz="..."/>'
+        joint.assume("axis", message, f'<axis xyz="{default}"/>')
+        return NumberList(joint.added("axis", xyz=default).xml.get("xyz"))
+    vector = axis.numbers("xyz", 3, None, default)
     x, y, z = vector.floats
+    message = ""
     if not any((x, y, z)):
-        raise axis.error("its axis is 0 0 0, which has no direction: write a unit vector")
-    if joint_type.axis_direction and not (x == y == 0.0 < z):
-        raise axis.error(
+        message = "its axis is 0 0 0, which has no direction: write a unit vector"
+    elif joint_type.axis_direction and not (x == y == 0.0 < z):
+        message = (
             "the axis of a planar joint is not along +z: URDF does not say which directions x and y then are; "
             "turn the joint by the rpy of its <origin> instead"
         )
+    if message:
+        axis.assume("direction", message, f'<axis xyz="{default}"/>')
+        axis.write(xyz=default)
+        return NumberList(default)
     return vector
 
 
-def _limit(joint: Element, joint_type: JointType) -> dict[str, Number] | None:
-    """Those limits that are written; of a joint that has no use for them they must still be numbers."""
-    limit = joint.child("limit")
+def _limit(joint: Element, joint_type: JointType, version: tuple[int, int]) -> dict[str, Number] | None:
+    """Those limits that the file sets; of a joint that has no use for them they may be anything."""
+    used = _has_direction(joint_type)
+    limit = joint.child("limit", used)
+    written = [key for key in ATTRIBUTES["limit"] if limit is not None and key in limit.xml.attrib]
+    if joint.log.lenient:
+        _complete_limit(joint, limit, joint_type, version)
     if limit is None:
         return None
-    numbers = {key: limit.number(key) for key in ATTRIBUTES["limit"] if key in limit.xml.attrib}
-    if not _has_direction(joint_type):
+    limits_1_2 = [key for key in LIMITS_1_2 if version >= (1, 2) and key in limit.xml.attrib]
+    _check_unused(limit, limits_1_2 if used else [*written, *limits_1_2], limits_1_2)
+    numbers = {key: limit.number(key) for key in written if used or not limit.problem(key)}
+    if not used:
         return numbers
-    values = dict.fromkeys(ATTRIBUTES["limit"], 0.0) | {key: float(number) for key, number in numbers.items()}
     for key in ("velocity", "effort"):
-        if values[key] < 0.0:
-            raise limit.error(f"{key} limit is {values[key]}: expected a positive number")
-    lower, upper = values["lower"], values["upper"]
-    if joint_type.limits != "none" and lower > upper:
-        raise limit.error(f"lower limit {lower} is above the upper one, {upper}: exchange them")
+        if key in numbers and float(numbers[key]) < 0.0:
+            limit.assume(
+                "limit", f"{key} limit is {float(numbers[key])}: expected a positive number", f"no {key} limit"
+            )
+            limit.write(**{key: UNLIMITED})
+            del numbers[key]
+    lower, upper = (numbers.get(key, Number("0")) for key in ("lower", "upper"))
+    if joint_type.limits != "none" and float(lower) > float(upper):
+        message = f"lower limit {float(lower)} is above the upper one, {float(upper)}: exchange them"
+        limit.assume("range", message, f"a range from {float(upper)} to {float(lower)}")
+        limit.write(lower=upper.text, upper=lower.text)
+        numbers |= {"lower": upper, "upper": lower}
     return numbers
+
+
+def _check_unused(limit: Element, keys: Iterable[str], positive: Collection[str]) -> None:
+    """Limits that the model has no use for: urdfdom refuses what it cannot read of them."""
+    for key in keys:
+        problem = limit.problem(key)
+        if not problem and key in positive and float(limit.xml.get(key)) < 0.0:
+            problem = f"{key} limit is negative"
+        if problem:
+            limit.note("unused", problem)
+
+
+def _complete_limit(joint: Element, limit: Element | None, joint_type: JointType, version: tuple[int, int]) -> None:
+    """Write out what urdfdom asks for: what the file does not limit is unlimited."""
+    if limit is None:
+        if joint_type.limits == "required":
+            message = f'a {joint_type.name} joint has no <limit>: write <limit lower="..." upper="..." .../>'
+            joint.assume("limit", message, "no limits")
+            joint.added("limit", lower=f"-{UNLIMITED}", upper=UNLIMITED, effort=UNLIMITED, velocity=UNLIMITED)
+        return
+    missing = [key for key in ("effort", "velocity") if key not in limit.xml.attrib]
+    if missing and version < (1, 2):
+        limit.assume("limit", f"its <limit> has no {' and no '.join(missing)}", f"no {' and '.join(missing)} limit")
+        limit.write(**dict.fromkeys(missing, UNLIMITED))
 
 
 def _mimic(joint: Element, joint_type: JointType) -> UrdfMimic | None:
     """What a joint follows; that of a fixed joint counts for nothing, and may say anything."""
-    mimic = joint.child("mimic")
+    mimic = joint.child("mimic", used=joint_type.nv > 0)
     if mimic is None:
         return None
     if joint_type.nv == 0:
         words = mimic.xml.attrib
         return UrdfMimic(words.get("joint", ""), Number(words.get("multiplier", "1")), Number(words.get("offset", "0")))
-    multiplier, offset = mimic.number("multiplier", "1"), mimic.number("offset", "0")
-    return UrdfMimic(mimic.text("joint", "expected the name of the joint to follow"), multiplier, offset)
+    multiplier, offset = mimic.number("multiplier", "1", "1"), mimic.number("offset", "0")
+    return UrdfMimic(mimic.text("joint"), multiplier, offset)
 
 
-def _check_tree(document: UrdfDocument, robot: Element, joints: dict[str, Element]) -> None:
-    """Each link but one is the child of one joint, and all hang on that one."""
-    links, carried = document.links, set[str]()
-    for joint in document.joints.values():
-        element = joints[joint.name]
-        for tag, link in (("parent", joint.parent), ("child", joint.child)):
-            if link not in links:
-                raise element.error(f"its {tag} link {link!r} does not exist: {nearest(link, sorted(links))}")
-        if joint.child in carried:
-            raise element.error(
-                f"link {joint.child!r} is already the child of another joint: a tree has one joint for each link"
+def _transmissions(robot: Element, joints: Mapping[str, Element]) -> tuple[UrdfTransmission, ...]:
+    """The transmissions; whether their joints exist, and each has an actuator of its own."""
+    read, drivers = [], Counter[str]()
+    for element in robot.children("transmission"):
+        xml, first = element.xml, {tag: element.xml.find(tag) for tag in ("type", "joint", "actuator")}
+        type_name = xml.get("type", "") if first["type"] is None else (first["type"].text or "")
+        joint, actuator = ("" if first[tag] is None else first[tag].get("name", "") for tag in ("joint", "actuator"))
+        transmission = UrdfTransmission(xml.get("name", ""), element.line, type_name.strip(), joint, actuator)
+        drivers[actuator] += 1
+        what = f"<transmission> {transmission.name!r}"
+        for target in (each.get("name", "") for each in xml.findall("joint")):
+            if target not in joints:
+                fix = element.nearest(target, joints)
+                element.note("transmission", f"{what} drives joint {target!r}, which does not exist: {fix}")
+        if actuator and drivers[actuator] == 2:
+            element.note("transmission", f"{what} has the actuator {actuator!r} of another one: give each its own")
+        read.append(transmission)
+    return tuple(read)
+
+
+def _check_asked(robot: Element, joints: Mapping[str, Element]) -> None:
+    """What urdfdom, and so Pinocchio, Gazebo and KDL, refuse although no number of the model depends on it."""
+    materials = Counter(material.text("name") for material in robot.children("material"))
+    for name, count in materials.items():
+        if name and count > 1:
+            robot.note("material", f"<material> {shortened(name)!r} stands {count} times: give each its own name")
+    for joint in joints.values():
+        for tag, keys in ASKED.items():
+            for element in joint.children(tag)[:1]:
+                written = [key for key in keys if key in element.xml.attrib]
+                needed = written + [key for key in ("k_velocity",) if key in keys and key not in written]
+                problem = next(filter(None, map(element.problem, needed)), "") if tag != "dynamics" else ""
+                if tag == "dynamics" and not written:
+                    problem = "<dynamics> has neither damping nor friction"
+                if problem:
+                    element.note("asked", problem)
+
+
+def _check_tree(
+    links: dict[str, UrdfLink], joints: dict[str, UrdfJoint], robot: Element, elements: Mapping[str, Element]
+) -> None:
+    """Each link but one is the child of one joint, and all hang on that one; what does not is taken out."""
+    carried = dict[str, str]()
+    for name, joint in list(joints.items()):
+        unknown = next((tag for tag in ("parent", "child") if getattr(joint, tag) not in links), None)
+        if unknown is not None:
+            link = getattr(joint, unknown)
+            fix = elements[name].nearest(link, links)
+            elements[name].error("joint", f"its {unknown} link {link!r} does not exist: {fix}", "the joint is left out")
+        elif joint.child in carried:
+            message = (
+                f"link {joint.child!r} is already the child of another joint, {carried[joint.child]!r}: a tree has one "
+                "joint for each link"
             )
-        carried.add(joint.child)
+            elements[name].assume("tree", message, "the joint is left out: the loop that it closes is not modelled")
+            elements[name].remove()
+        else:
+            carried[joint.child] = name
+            continue
+        del joints[name]
+    on_link: dict[str, list[str]] = {name: [] for name in links}
+    for joint in joints.values():
+        on_link[joint.parent].append(joint.child)
     roots = sorted(links.keys() - carried)
+    reached = {root: _reached(root, on_link) for root in roots}
+    kept = max(reached.values(), key=len, default=_reached(next(iter(links)), on_link))
     if len(roots) > 1:
-        raise robot.error(
-            f"has {len(roots)} root links ({', '.join(roots[:6])}), expected one: join them with fixed joints"
-        )
-    # From a root no loop can be entered, since each link has one parent: the walk ends, and leaves the loops out.
-    reached = {name for _, name in document.walk()} if roots else set()
-    if len(reached) < len(links):
-        loop = ", ".join(sorted(links.keys() - reached)[:6])
-        raise robot.error(f"has a loop of joints through {loop}: a URDF is a tree; cut the loop at one joint")
+        rest = ", ".join(shortened(root) for root in roots[:6])
+        message = f"has {len(roots)} root links ({rest}), expected one: join them with fixed joints"
+        robot.error("tree", message, f"the {len(kept)} links on {next(iter(kept))!r} are read, the others left out")
+    # From a root no loop can be entered, since each link has one parent.
+    looped = links.keys() - set[str]().union(*reached.values())
+    if looped:
+        loop = ", ".join(sorted(looped)[:6])
+        what = "a loop of joints" if roots else "no root link, and a loop of joints"
+        message = f"has {what} through {loop}: a URDF is a tree; cut the loop at one joint"
+        left_out = f"the {len(kept)} links on {next(iter(kept))!r} are read, the others left out"
+        robot.error("loop", message, left_out)
+    for name in links.keys() - kept.keys():
+        del links[name]
+    root = next(iter(kept))
+    for name in [name for name, joint in joints.items() if joint.parent not in kept or joint.child == root]:
+        del joints[name]
 
 
-def _check_mimics(document: UrdfDocument, joints: dict[str, Element]) -> None:
-    """Each <mimic> names a joint with one coordinate, and following them comes to a joint that moves by itself."""
-    for joint in document.joints.values():
-        followed = [joint.name]
-        while joint.moves and joint.mimic is not None:
-            # The error stands at the link of the chain that is wrong, be it another joint's <mimic>.
-            mimic, target = joints[joint.name].needed("mimic", ""), joint.mimic.joint
-            if target not in document.joints:
-                raise mimic.error(f"follows joint {target!r}, which does not exist: {nearest(target, document.joints)}")
-            for follower in (joint, document.joints[target]):
-                if JOINT_TYPES[follower.type].nq != 1:
-                    raise mimic.error(
-                        f"joint {follower.name!r} is {follower.type}: only joints with one coordinate follow"
-                    )
-            if target in followed:
-                raise mimic.error(
-                    f"follows itself through {' -> '.join([*followed, target])}: let one of them move by itself"
-                )
-            followed.append(target)
-            if len(followed) > LONGEST_CHAIN:
-                raise mimic.error(f"follows through more than {LONGEST_CHAIN} joints: let it follow the last of them")
-            joint = document.joints[target]
+def _reached(root: str, on_link: Mapping[str, list[str]]) -> dict[str, None]:
+    """The links that hang on one, itself first."""
+    reached, waiting = dict[str, None](), [root]
+    while waiting:
+        name = waiting.pop()
+        if name not in reached:
+            reached[name] = None
+            waiting += on_link[name]
+    return reached
+
+
+def _check_mimics(joints: dict[str, UrdfJoint], elements: Mapping[str, Element]) -> None:
+    """Each <mimic> leads to a joint with one coordinate that moves by itself; one that does not is taken out."""
+    for first in list(joints):
+        followed, name = {first: None}, first
+        while (mimic := joints[name].mimic) is not None and joints[name].moves:
+            # The fault stands at the link of the chain that is wrong, be it another joint's <mimic>.
+            element = elements[name].children("mimic")[0]
+            if problem := _followed(element, name, mimic.joint, joints, followed):
+                element.assume("mimic", problem, f"joint {name!r} moves by itself")
+                element.remove()
+                joints[name] = replace(joints[name], mimic=None)
+                break
+            name = mimic.joint
+            followed[name] = None
+
+
+def _followed(
+    element: Element, name: str, target: str, joints: Mapping[str, UrdfJoint], followed: Mapping[str, None]
+) -> str:
+    """Why a joint cannot follow another; empty if it can."""
+    if not target:
+        return "<mimic> has no joint, expected the name of the joint to follow"
+    if target not in joints:
+        return f"follows joint {target!r}, which does not exist: {element.nearest(target, joints)}"
+    for follower in (name, target):
+        if JOINT_TYPES[joints[follower].type].nq != 1:
+            return f"joint {follower!r} is {joints[follower].type}: only joints with one coordinate follow"
+    if target in followed:
+        return f"follows itself through {' -> '.join([*followed, target])}: let one of them move by itself"
+    if len(followed) >= LONGEST_CHAIN:
+        return f"follows through more than {LONGEST_CHAIN} joints: let it follow the last of them"
+    return ""

@@ -11,7 +11,7 @@ import numpy as np
 
 from rttrr_pin.core.joint import Joint, JointEffects, Limits, Mimic
 from rttrr_pin.core.joints import JOINT_TYPES, JointType
-from rttrr_pin.core.model import Link, Model
+from rttrr_pin.core.model import Link, Model, Note
 from rttrr_pin.errors import InputError, UrdfError, shortened
 from rttrr_pin.urdf.document import NO_INERTIAL, UrdfDocument, UrdfJoint, UrdfLink
 from rttrr_pin.urdf.parser import read_document
@@ -32,10 +32,12 @@ def read_urdf(source: AnySource, reading: Reading = AS_IT_STANDS) -> Model:
         UnknownNameError, InputError, UrdfError: as in `read_document`; UrdfError also where numbers overflow.
     """
     file = find(source, reading)
-    model = model_of(read_document(file))
+    document = read_document(file, reading)
+    model = model_of(document)
     if file.model is not None:
         model = _completed(model, file.model)
-    return replace(model, notes=file.notes)
+    assumed = (Note(fault.sentence, left_out=True) for fault in document.remarks)
+    return replace(model, notes=(*file.notes, *assumed))
 
 
 def _completed(read: Model, own: Model) -> Model:

@@ -27,6 +27,7 @@ from typing import Any, TypeAlias
 from rttrr_pin.core.model import Model, Note
 from rttrr_pin.errors import InputError, UnknownNameError, UrdfError, shortened
 from rttrr_pin.urdf import xacro
+from rttrr_pin.urdf.packages import forget_packages
 
 AnySource: TypeAlias = Any
 """What `load` takes: str | os.PathLike[str] | pinocchio.Model | mujoco.MjModel | yourdfpy.URDF."""
@@ -59,10 +60,16 @@ class Reading:
     Attributes:
         xacro: whether a xacro file is expanded, which runs the Python in it.
         xacro_args: values of its <xacro:arg>, by name; to pass some asks for it too.
+        lenient: whether to go on with what is assumed where the file is wrong, or does not say.
+        mimic: whether joints follow others; without it each moves by itself.
+        packages: folders by the names of packages; others are looked for (`packages.py`).
     """
 
     xacro: bool = False
     xacro_args: Mapping[str, object] = field(default_factory=dict)
+    lenient: bool = False
+    mimic: bool = True
+    packages: Mapping[str, Path] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "xacro_args", xacro.arguments(self.xacro_args))
@@ -186,6 +193,10 @@ def _may_be_a_file(path: Path) -> bool:
 def find(source: AnySource, reading: Reading = AS_IT_STANDS) -> Source:
     """The text behind a source; see the table at the top of this file.
 
+    Args:
+        source: a name, a path, a text, ...
+        reading: what the user allows.
+
     Raises:
         UnknownNameError: there is neither such a bundled robot nor such a file, or no such example robot.
         UrdfError: the file cannot be read, is too large to be a URDF, or is xacro that cannot be expanded; or the
@@ -194,6 +205,7 @@ def find(source: AnySource, reading: Reading = AS_IT_STANDS) -> Source:
     """
     if isinstance(source, Source):
         return source
+    forget_packages()
     for library, kind in OBJECTS.items():
         module = sys.modules.get(library)
         if module is not None and isinstance(source, getattr(module, kind)):
@@ -284,7 +296,8 @@ def _find_path(path: Path, reading: Reading) -> Source:
         raise UnknownNameError("bundled robot or file", shortened(str(path)), bundled(), fix)
     file = _file(str(path), path)
     if (reading.xacro or reading.xacro_args) and xacro.is_xacro(path, file.text):
-        return Source(f"{path} (as xacro expands it)", xacro.expanded(path, reading.xacro_args), file.folder)
+        text = xacro.expanded(path, reading.xacro_args, reading.packages)
+        return Source(f"{path} (as xacro expands it)", text, file.folder)
     if path.suffix == xacro.SUFFIX:
         raise xacro.refusal(path)
     return file

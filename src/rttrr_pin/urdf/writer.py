@@ -15,6 +15,7 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints import CONTINUOUS, JointType
 from rttrr_pin.core.model import Link, Model
+from rttrr_pin.core.solids import angles_of
 from rttrr_pin.urdf.document import ENTRIES
 from rttrr_pin.urdf.vocabulary import ATTRIBUTES
 
@@ -44,19 +45,6 @@ def urdf_text(model: Model) -> str:
 def written(values: Iterable[float]) -> str:
     """Numbers that are read back as the same doubles."""
     return " ".join(repr(float(value)) for value in values)
-
-
-def angles_of(R: Array) -> tuple[float, float, float]:
-    """Roll, pitch, yaw with R_z(yaw) R_y(pitch) R_x(roll) = R, accurate at pitch +-pi/2 too.
-
-    Near there roll and yaw are ill-conditioned one by one; yaw is taken from R R_x(roll)^T, so that it makes up for
-    whatever roll came out as.
-    """
-    roll = math.atan2(R[2, 1], R[2, 2])
-    pitch = math.atan2(-R[2, 0], math.hypot(R[2, 1], R[2, 2]))
-    c, s = math.cos(roll), math.sin(roll)
-    yaw = math.atan2(s * R[0, 2] - c * R[0, 1], c * R[1, 1] - s * R[1, 2])
-    return roll, pitch, yaw
 
 
 def tensor_words(tensor: Array) -> dict[str, str]:

@@ -6,10 +6,13 @@ file is expanded only where the user asks for it (`Reading.xacro`), and never be
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from rttrr_pin.errors import InputError, UrdfError
+from rttrr_pin.urdf.packages import find_package
 
 SUFFIX = ".xacro"
 
@@ -44,7 +47,7 @@ def arguments(words: Mapping[str, object]) -> dict[str, str]:
     return {name: str(value).lower() if isinstance(value, bool) else str(value) for name, value in words.items()}
 
 
-def expanded(path: Path, given: Mapping[str, object]) -> bytes:
+def expanded(path: Path, given: Mapping[str, object], packages: Mapping[str, Path]) -> bytes:
     """The URDF that a xacro file stands for, line by line what the command `xacro FILE NAME:=VALUE ...` prints.
 
     Raises:
@@ -52,12 +55,14 @@ def expanded(path: Path, given: Mapping[str, object]) -> bytes:
     """
     try:
         import xacro
+        from xacro import substitution_args
     except ImportError:
         raise UrdfError(
             "is a xacro file, which needs the package xacro: pip install 'rttrr-pin[xacro]'", source=str(path)
         ) from None
     try:
-        text: str = xacro.process_file(str(path), mappings=dict(given)).toprettyxml(indent="  ")
+        with _packages_of(substitution_args, path.absolute().parent, packages):
+            text: str = xacro.process_file(str(path), mappings=dict(given)).toprettyxml(indent="  ")
         return text.encode()
     except RecursionError:
         raise UrdfError("xacro cannot expand it: a macro calls itself without end", source=str(path)) from None
@@ -66,9 +71,25 @@ def expanded(path: Path, given: Mapping[str, object]) -> bytes:
         raise UrdfError(f"xacro cannot expand it: {reason}{_fix(reason)}", source=str(path)) from error
 
 
+@contextmanager
+def _packages_of(substitution: Any, folder: Path, packages: Mapping[str, Path]) -> Iterator[None]:
+    """Let xacro's `$(find ...)` look where `find_package` does, and ask ROS only then."""
+    ask_ros = substitution._eval_find
+
+    def find_or_ask(name: str) -> str:
+        package = find_package(name, folder, packages)
+        return ask_ros(name) if package is None else str(package)
+
+    substitution._eval_find = substitution._eval_dict["find"] = find_or_ask
+    try:
+        yield
+    finally:
+        substitution._eval_find = substitution._eval_dict["find"] = ask_ros
+
+
 def _fix(reason: str) -> str:
     if "ament_index_python" in reason:
-        return ": $(find ...) asks ROS; source its setup first, or run xacro there and pass the URDF"
+        return ": a package was not found; name its folder by --package NAME=FOLDER, packages={...}"
     if "Undefined substitution argument" in reason:
         return ": add --xacro-arg NAME:=VALUE (load(..., xacro_args={'NAME': 'VALUE'})), or give it a default"
     return ""

@@ -17,10 +17,10 @@ from xml.etree import ElementTree as ET
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.core.solids import rotation
+from rttrr_pin.core.solids import angles_of, rotation
 from rttrr_pin.errors import UrdfError
 from rttrr_pin.urdf.vocabulary import ATTRIBUTES
-from rttrr_pin.urdf.writer import angles_of, tensor_words, written
+from rttrr_pin.urdf.writer import tensor_words, written
 
 ROTATION_TOLERANCE = 8 * float(np.finfo(float).eps)
 """On each element of a rotation matrix, between the object's and the one that the written angles give back."""

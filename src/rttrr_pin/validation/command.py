@@ -11,7 +11,7 @@ from typing import Any
 import click
 
 from rttrr_pin.errors import InputError
-from rttrr_pin.reporting.options import flag, outcome, robot, seed, xacro_arguments
+from rttrr_pin.reporting.options import flag, outcome, robot, seed
 from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json
 from rttrr_pin.robot import Robot
 from rttrr_pin.urdf.document import UrdfDocument
@@ -124,13 +124,13 @@ def _validate_several(
     from rttrr_pin.validation.many import BASES, Task, many_data, validate_many
     from rttrr_pin.validation.report import show_many
 
-    allowed = ("--subject", "--reference", "--seed", "--sampling", "--xacro", "--xacro-arg")
+    own = ("--subject", "--reference", "--seed", "--sampling")
+    allowed = (*own, "--xacro", "--xacro-arg", "--lenient", "--no-mimic", "--package")
     refused = [word for word in options.unusual() if word.startswith("--") and word not in allowed]
     refused += ["--full"] * full + ["--reference more than once"] * (len(options.reference) > 1)
     if refused:
         raise InputError(f"{', '.join(refused)} goes with one robot, and several are named: name one, or leave it out")
-    arguments = xacro_arguments(options.xacro_arg)
-    task = Task(states, options.seed, options.sampling, options.subject, options.reference[0], options.xacro, arguments)
+    task = Task(states, options.seed, options.sampling, options.subject, options.reference[0], **options.reading())
     start = time.perf_counter()
     with progress(len(sources) * len(BASES), quiet, "runs") as advance:
         entries = validate_many(sources, task, progress=advance)

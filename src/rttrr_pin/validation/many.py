@@ -6,6 +6,7 @@ import os
 import signal
 import threading
 import time
+import warnings
 from collections import Counter, deque
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
@@ -16,7 +17,7 @@ from pathlib import Path
 from typing import Any, Literal, get_args
 
 from rttrr_pin.core.inputs import whole_number
-from rttrr_pin.errors import ModelMismatchError, RttrrError, UnknownNameError
+from rttrr_pin.errors import LoadWarning, ModelMismatchError, RttrrError, UnknownNameError
 from rttrr_pin.implementations import names
 from rttrr_pin.loading import load
 from rttrr_pin.reporting.interrupts import held_back
@@ -45,6 +46,7 @@ class Task:
         reference: the program that it is compared with, by name.
         xacro: whether xacro files are expanded, which runs the Python in them.
         xacro_args: values of their <xacro:arg>, by name.
+        lenient, mimic, packages: how its file is read, see `load`.
     """
 
     n_states: int = 10_000
@@ -54,6 +56,9 @@ class Task:
     reference: str = "pinocchio"
     xacro: bool = False
     xacro_args: Mapping[str, object] = field(default_factory=dict)
+    lenient: bool = False
+    mimic: bool = True
+    packages: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +76,7 @@ class Entry:
         worst: the quantity, the place and the state of that.
         defect: what stops it, or what differs; empty otherwise.
         seconds: wall time.
+        notes: what was assumed of the file, or left out.
     """
 
     name: str
@@ -83,6 +89,7 @@ class Entry:
     worst: str = ""
     defect: str = ""
     seconds: float = 0.0
+    notes: tuple[str, ...] = ()
 
 
 def validate_many(
@@ -212,13 +219,25 @@ def _end_with_the_parent() -> None:
 def _entry(name: str, path: Path, base: Base, task: Task) -> Entry:
     """One robot on one base."""
     start = time.perf_counter()
+    notes: tuple[str, ...] = ()
     try:
-        robot = load(path, base=base, xacro=task.xacro, xacro_args=task.xacro_args)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", LoadWarning)  # the entry says it
+            robot = load(
+                path,
+                base=base,
+                xacro=task.xacro,
+                xacro_args=task.xacro_args,
+                lenient=task.lenient,
+                mimic=task.mimic,
+                packages=task.packages,
+            )
+        notes = tuple(note.text for note in robot.model.notes)
         result = validate(robot, task.subject, task.reference, task.n_states, task.seed, task.sampling)
     except (RttrrError, MemoryError) as error:
         verdict: Verdict = "disagree" if isinstance(error, ModelMismatchError) else "unusable"
         defect = str(error).replace(str(path), path.name) or "there is not enough memory for it"
-        return Entry(name, base, verdict, defect=defect, seconds=time.perf_counter() - start)
+        return Entry(name, base, verdict, defect=defect, seconds=time.perf_counter() - start, notes=notes)
     worst = result.worst
     return Entry(
         name,
@@ -230,6 +249,7 @@ def _entry(name: str, path: Path, base: Base, task: Task) -> Entry:
         of_tolerance=worst.of_tolerance.value,
         worst=f"{worst.quantity} at {worst.at}, state {worst.of_tolerance.state}",
         seconds=time.perf_counter() - start,
+        notes=notes,
     )
 
 

@@ -21,7 +21,9 @@ from rttrr_pin.reporting.options import (
     gravity,
     group,
     numbers_of,
+    packages_of,
     payload_link,
+    reading,
     seed,
     xacro,
     xacro_arguments,
@@ -55,7 +57,7 @@ payload = click.option(
 payload_frame = group(
     payload_link, click.option("--payload-axes", default="link", help="The axes of the six numbers: link or base.")
 )
-conditions = group(payload_frame, gravity, base, friction, xacro)
+conditions = group(payload_frame, gravity, base, friction, xacro, reading)
 drawn = group(seed, sampling, payload, conditions)
 """The states that `validate` draws."""
 
@@ -77,6 +79,9 @@ class RunOptions:
     friction: bool = False
     xacro: bool = False
     xacro_arg: tuple[str, ...] = ()
+    lenient: bool = False
+    no_mimic: bool = False
+    package: tuple[str, ...] = ()
 
     def unusual(self) -> list[str]:
         """The options that differ from their defaults, as words of a command line."""
@@ -103,8 +108,18 @@ class RunOptions:
         field: dict[str, Any] = {}
         if self.gravity is not None:
             field["gravity"] = numbers_of("--gravity", self.gravity, 3)
-        field |= {"xacro": self.xacro, "xacro_args": xacro_arguments(self.xacro_arg)}
-        return load(self.robot, base=self.base, friction=self.friction, **field)  # type: ignore[arg-type]
+        how = self.reading() | field
+        return load(self.robot, base=self.base, friction=self.friction, **how)  # type: ignore[arg-type]
+
+    def reading(self) -> dict[str, Any]:
+        """How the file is read, as `load` takes it."""
+        return {
+            "xacro": self.xacro,
+            "xacro_args": xacro_arguments(self.xacro_arg),
+            "lenient": self.lenient,
+            "mimic": not self.no_mimic,
+            "packages": packages_of(self.package),
+        }
 
     def chosen(self) -> dict[str, Any]:
         """Programs and states, as the functions of the package take them."""

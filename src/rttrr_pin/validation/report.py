@@ -305,7 +305,8 @@ def show_many(entries: Sequence[Entry], task: Task, seconds: float, console: Con
     console.print(Text("relative: worst normwise error over all links", "dim"))
     defects = dict.fromkeys(f"{entry.name}: {entry.defect}" for entry in entries if entry.defect)
     worst = (entry for entry in entries if entry.verdict == "disagree" and entry.worst)
-    for line in (*defects, *(f"{entry.name}, {entry.base} base: worst {entry.worst}" for entry in worst)):
+    notes = dict.fromkeys(f"{entry.name}: {note}" for entry in entries for note in entry.notes)
+    for line in (*notes, *defects, *(f"{entry.name}, {entry.base} base: worst {entry.worst}" for entry in worst)):
         console.print(Text(line), soft_wrap=True)
     counts = Counter[str](entry.verdict for entry in entries)
     console.print(

@@ -1,0 +1,123 @@
+"""Packages are found without ROS: by package.xml, upwards and beside, by name, and in ROS_PACKAGE_PATH."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+import rttrr_pin
+from rttrr_pin.cli import program
+from rttrr_pin.core.solids import Capsule, Cylinder, Sphere
+from rttrr_pin.errors import InputError, UrdfError
+from rttrr_pin.inspection.shapes import find_mesh
+from rttrr_pin.urdf.packages import find_package, forget_packages
+from support.inspected import arm, inertial, shape
+
+XACRO = """<robot name="top" xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:include filename="$(find {package})/urdf/parts.xacro"/>
+<xacro:parts/>
+</robot>
+"""
+PARTS = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:macro name="parts"><link name="base"/></xacro:macro>
+</robot>
+"""
+
+
+@pytest.fixture(autouse=True)
+def without_ros(monkeypatch: pytest.MonkeyPatch) -> None:
+    for name in ("ROS_PACKAGE_PATH", "AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH"):
+        monkeypatch.delenv(name, raising=False)
+    forget_packages()
+
+
+def package(folder: Path, name: str | None = None) -> Path:
+    """A package that is called otherwise than its folder, if a name is given."""
+    (folder / "urdf").mkdir(parents=True)
+    (folder / "urdf" / "parts.xacro").write_text(PARTS)
+    (folder / "package.xml").write_text(f'<package format="2">\n<name> {name or folder.name} </name></package>')
+    return folder
+
+
+@pytest.mark.parametrize("place", ["ws/src/arm", "ws/src/group/arm", "ws/arm", "arm"])
+@pytest.mark.parametrize("name", ["arm", "arm_description"])
+def test_packages_are_found_upwards_and_beside(tmp_path: Path, place: str, name: str) -> None:
+    start = tmp_path / "ws" / "src" / "robot" / "urdf"
+    start.mkdir(parents=True)
+    wanted = package(tmp_path / place, name)
+    assert find_package(name, start, {}) == wanted
+    assert find_package(name, wanted / "urdf", {}) == wanted
+    assert find_package("nowhere", start, {}) is None
+
+
+def test_a_manifest_is_better_than_a_name(tmp_path: Path) -> None:
+    (tmp_path / "hand").mkdir()
+    assert find_package("hand", tmp_path, {}) == tmp_path / "hand"
+    forget_packages()
+    wanted = package(tmp_path / "else", "hand")
+    assert find_package("hand", tmp_path, {}) == wanted
+
+
+@pytest.mark.parametrize("name", ["", ".", "..", "a/b", "../arm", "x" * 300, "a\0b", "a\\b"])
+def test_odd_names_find_nothing(tmp_path: Path, name: str) -> None:
+    package(tmp_path / "arm")
+    assert find_package(name, tmp_path / "arm" / "urdf", {}) is None
+
+
+def test_packages_of_ros(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    start = tmp_path / "somewhere" / "1" / "2" / "3" / "4" / "5" / "6" / "7" / "8"
+    start.mkdir(parents=True)
+    catkin, ament = package(tmp_path / "catkin" / "src" / "arm"), package(tmp_path / "install" / "share" / "leg")
+    monkeypatch.setenv("ROS_PACKAGE_PATH", f"/nowhere:{tmp_path / 'catkin' / 'src'}")
+    monkeypatch.setenv("AMENT_PREFIX_PATH", str(tmp_path / "install"))
+    assert find_package("arm", start, {}) == catkin and find_package("leg", start, {}) == ament
+    other = package(tmp_path / "other")
+    assert find_package("arm", start, {"arm": other}) == other
+
+
+def test_xacro_finds_packages(tmp_path: Path) -> None:
+    package(tmp_path / "parts", "parts_description")
+    top = tmp_path / "robot" / "urdf" / "top.urdf.xacro"
+    top.parent.mkdir(parents=True)
+    top.write_text(XACRO.format(package="parts_description"))
+    assert rttrr_pin.load(top).name == "top"
+    top.write_text(XACRO.format(package="missing"))
+    with pytest.raises(UrdfError, match="--package NAME=FOLDER"):
+        rttrr_pin.load(top)
+    assert rttrr_pin.load(top, packages={"missing": tmp_path / "parts"}).name == "top"
+    with pytest.raises(InputError, match="is no folder"):
+        rttrr_pin.load(top, packages={"missing": tmp_path / "nowhere"})
+
+
+def test_meshes_are_found_in_packages(tmp_path: Path) -> None:
+    mesh = package(tmp_path / "parts", "parts_description") / "meshes" / "arm.stl"
+    mesh.parent.mkdir()
+    mesh.write_text("solid x\nendsolid x\n")
+    start = tmp_path / "robot" / "urdf"
+    start.mkdir(parents=True)
+    assert find_mesh("package://parts_description/meshes/arm.stl", start) == mesh
+    assert find_mesh("package://other/meshes/arm.stl", start) is None
+    assert find_mesh("package://other/meshes/arm.stl", None, {"other": tmp_path / "parts"}) == mesh
+
+
+def test_the_command_line_takes_packages(tmp_path: Path) -> None:
+    path = tmp_path / "arm.urdf"
+    path.write_text(arm(inertial()))
+    for command in (["inspect"], ["derive", "-q"], ["validate", "-q", "--states", "3", "--subject", "recursion"]):
+        run = CliRunner().invoke(program, [*command, str(path), "--package", f"x={tmp_path}"], standalone_mode=False)
+        assert run.exception is None, run.exception
+        run = CliRunner().invoke(program, [*command, str(path), "--package", "x"], standalone_mode=False)
+        assert isinstance(run.exception, InputError) and "NAME=FOLDER" in str(run.exception)
+
+
+def test_capsules_are_looked_at() -> None:
+    """A cylinder with half a ball on each end: between the cylinder and the ball, and both in the limits."""
+    capsule = Capsule(0.1, 0.4)
+    assert capsule.volume == pytest.approx(Cylinder(0.1, 0.4).volume + Sphere(0.1).volume)
+    assert Capsule(0.1, 1e-9).specific_inertia() == pytest.approx(Sphere(0.1).specific_inertia(), rel=1e-6)
+    assert Capsule(1e-6, 0.4).specific_inertia()[0, 0] == pytest.approx(0.4**2 / 12, rel=1e-4)
+    text = arm(inertial(1, (4, 0, 0, 4, 0, 4)) + shape('<capsule radius="0.1" length="0.4"/>'))
+    findings = rttrr_pin.inspect(rttrr_pin.load(text)).findings
+    assert "G201" in {finding.id for finding in findings}
