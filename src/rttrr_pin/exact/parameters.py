@@ -70,7 +70,8 @@ class ExactParameters:
             """URDF's R = R_z(yaw) R_y(pitch) R_x(roll), or that of the quaternion."""
             if origin.quaternion is not None:
                 rows = rows_of_quaternion([self.exact(x) for x in origin.quaternion.each])
-                return Matrix(tuple(Vector(*map(number, row)) for row in rows))
+                row_x, row_y, row_z = (Vector(*map(number, row)) for row in rows)
+                return Matrix((row_x, row_y, row_z))
             turns = zip(np.eye(3, dtype=int).tolist(), vector(origin.rpy), strict=True)
             x, y, z = (rotation(Vector(*axis), angle, arithmetic.sincos) for axis, angle in turns)
             return z @ (y @ x)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import logging
 import warnings
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from itertools import product
@@ -133,7 +133,8 @@ def _primitive(shape: UrdfShape) -> Solid | None:
         if shape.tag == "box":
             x, y, z = sizes
             return Box((x, y, z))
-        return {"sphere": Sphere, "cylinder": Cylinder, "capsule": Capsule}[shape.tag](*sizes)
+        solids: dict[str, Callable[..., Solid]] = {"sphere": Sphere, "cylinder": Cylinder, "capsule": Capsule}
+        return solids[shape.tag](*sizes)
     except (KeyError, ValueError, TypeError):  # no such tag or attribute; no number; too few or too many numbers
         return None
 
