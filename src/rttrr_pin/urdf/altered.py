@@ -13,10 +13,11 @@ from lxml import etree
 
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.model import Document, Link, Model
+from rttrr_pin.core.solids import angles_of
 from rttrr_pin.urdf.document import UrdfDocument
 from rttrr_pin.urdf.parser import read_document
 from rttrr_pin.urdf.sources import Source
-from rttrr_pin.urdf.writer import angles_of, urdf_text, written
+from rttrr_pin.urdf.writer import urdf_text, written
 
 OF_MOVING = ("origin", "axis", "limit", "mimic", "dynamics", "calibration", "safety_controller")
 """What a joint that is locked loses; it gets another <origin>."""
