@@ -82,13 +82,13 @@ def test_xacro_finds_packages(tmp_path: Path) -> None:
     top = tmp_path / "robot" / "urdf" / "top.urdf.xacro"
     top.parent.mkdir(parents=True)
     top.write_text(XACRO.format(package="parts_description"))
-    assert rttrr_pin.load(top).name == "top"
+    assert rttrr_pin.load(top, xacro=True).name == "top"
     top.write_text(XACRO.format(package="missing"))
     with pytest.raises(UrdfError, match="--package NAME=FOLDER"):
-        rttrr_pin.load(top)
-    assert rttrr_pin.load(top, packages={"missing": tmp_path / "parts"}).name == "top"
+        rttrr_pin.load(top, xacro=True)
+    assert rttrr_pin.load(top, xacro=True, packages={"missing": tmp_path / "parts"}).name == "top"
     with pytest.raises(InputError, match="is no folder"):
-        rttrr_pin.load(top, packages={"missing": tmp_path / "nowhere"})
+        rttrr_pin.load(top, xacro=True, packages={"missing": tmp_path / "nowhere"})
 
 
 def test_meshes_are_found_in_packages(tmp_path: Path) -> None:
