@@ -32,7 +32,8 @@ LET_THROUGH = {
 MOST_HINTS = 20
 """Names that are looked for among those that are known."""
 
-QUOTED_NUMBERS = re.compile(rb"""(["'])([0-9eE+. \t\r\n-]*)\1""")
+QUOTED_NUMBERS = re.compile(rb"""(["'])([0-9eE+. -]*[\t\r\n][0-9eE+. \t\r\n-]*)\1""")
+"""Numbers in quotation marks with a tab or line end among them."""
 
 
 class Element:
