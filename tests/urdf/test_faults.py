@@ -242,3 +242,11 @@ def test_a_robot_with_something_called_root_joint_floats(names: list[str]) -> No
     assert len(set(robot.joint_names)) == 3
     for program in ("recursion", "kernel"):
         assert rttrr_pin.validate(robot, subject=program, n_states=20).passed
+
+
+def test_what_xacro_would_write_is_never_assumed() -> None:
+    text = changed('<mass value="1.5"/>', '<mass value="${mass}"/>')
+    for lenient in (False, True):
+        with pytest.raises(UrdfError, match="this is xacro, which must be expanded") as caught:
+            rttrr_pin.load(text, lenient=lenient)
+        assert "--lenient" not in str(caught.value)

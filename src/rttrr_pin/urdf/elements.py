@@ -29,6 +29,9 @@ LET_THROUGH = {
 }
 """Errors of libxml2 that leave the tree whole: the kind of the fault, and its message."""
 
+UNEXPANDED = "this is xacro, which must be expanded: add --xacro (xacro=True), or run xacro on it"
+"""What is wrong with a value such as ${mass}."""
+
 MOST_HINTS = 20
 """Names that are looked for among those that are known."""
 
@@ -56,8 +59,8 @@ class Element:
         self.log.faults.append(Fault(kind, level, self.tag, self.name, self.line, shown(self.xml), message, assumed))
 
     def assume(self, kind: str, message: str, assumed: str) -> None:
-        """Log what a number depends on, and what is read in its place."""
-        self.fault(kind, Level.ASSUMPTION, message, assumed)
+        """Log what a number depends on, and what is read in its place: nothing for what xacro would write."""
+        self.fault(kind, Level.ERROR if UNEXPANDED in message else Level.ASSUMPTION, message, assumed)
 
     def error(self, kind: str, message: str, left_out: str) -> None:
         """Log what makes no robot, and what is left out."""
@@ -167,7 +170,7 @@ def _hint(text: str) -> str:
     if re.search(r"\d\s*[a-zA-Z]+$", text) and not text.lower().startswith(("0x", "-0x")):
         return ": write it without its unit (URDF is in m, kg, rad, s)"
     if "${" in text or "$(" in text:
-        return ": this is xacro, run xacro on it first"
+        return f": {UNEXPANDED}"
     return ": write digits with a point"
 
 

@@ -470,8 +470,8 @@ def _check_mimics(joints: dict[str, UrdfJoint], elements: Mapping[str, Element])
         followed, name = {first: None}, first
         while (mimic := joints[name].mimic) is not None and joints[name].moves:
             # The fault stands at the link of the chain that is wrong, be it another joint's <mimic>.
-            element = elements[name].children("mimic")[0]
-            if problem := _followed(element, name, mimic.joint, joints, followed):
+            if problem := _followed(elements[name], name, mimic.joint, joints, followed):
+                element = elements[name].children("mimic")[0]
                 element.assume("mimic", problem, f"joint {name!r} moves by itself")
                 element.remove()
                 joints[name] = replace(joints[name], mimic=None)
