@@ -190,10 +190,10 @@ def test_an_error_of_1e_10_in_one_mass_of_a_tree_is_seen(base: Any, monkeypatch:
             heavier = replace(link, mass=link.mass * (1 + 1e-10))
             other = Robot(replace(model, links=(*model.links[:i], heavier, *model.links[i + 1 :])))
             run = Run.of(other, "recursion", "mujoco", 0, "uniform", None)
-            batch = run.states(0, 5)
+            batch = run.states.batch(0, 5)
             (differences,) = run.differences(batch, run.evaluate(batch))
-            pairs = zip(run.rows, differences, strict=True)
-            failed = {(row.quantity, row.at) for (_, row), one in pairs if one.of_tolerance.max() > 1.0}
+            pairs = zip(run.comparisons[0].rows, differences, strict=True)
+            failed = {(row.quantity, row.at) for row, one in pairs if one.of_tolerance.max() > 1.0}
             assert {("F", link.name), ("f", link.name)} <= failed
 
 

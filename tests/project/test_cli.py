@@ -127,7 +127,7 @@ UNUSABLE = {
     "payload-nan": (["validate", "--payload", "nan,2,3,4,5,6"], "expected 6 numbers"),
     "gravity": (["validate", "--gravity", "9.81"], "--gravity is '9.81': expected 3 numbers"),
     "seed": (["validate", "--seed", "-1"], "seed is -1"),
-    "state": (["state", "--index", "-1"], "state is -1: expected a whole number from 0"),
+    "state": (["state", "--index", "-1"], "--index is -1: expected a whole number from 0"),
     "state-huge": (["state", "--index", "99999999999999999999"], "expected a whole number from 0 to 10^15"),
     "gravity-word": (["validate", "--gravity", "1_0,0,0"], "expected 3 numbers"),
     "nothing": (["validate", ""], "is empty"),

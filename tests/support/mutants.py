@@ -19,7 +19,8 @@ from typing import Any
 
 import pytest
 
-from rttrr_pin.core import dynamics, newton_euler, rotations
+from rttrr_pin.core import dynamics, newton_euler
+from rttrr_pin.core.algebra import quaternion_rotation, rotation
 from rttrr_pin.core.joints import JOINT_TYPES
 
 STEPS = (newton_euler.outwards, newton_euler.inwards)
@@ -96,7 +97,8 @@ def planted(mutant: Mutant) -> Iterator[None]:
 
 def _functions() -> Iterator[Any]:
     """The mechanics of the core: the recursion, mimic joints, friction, and how joints move."""
-    for module in (newton_euler, rotations, dynamics):
+    yield from (rotation, quaternion_rotation)
+    for module in (newton_euler, dynamics):
         yield from (x for x in vars(module).values() if inspect.isfunction(x) and x.__module__ == module.__name__)
     methods = (getattr(type(kind), name) for kind in JOINT_TYPES.values() for name in ("motion", "driving_force"))
     yield from dict.fromkeys(methods)

@@ -10,7 +10,8 @@ from pathlib import Path
 
 import pytest
 
-SECONDS, MEGABYTES = 2.0, 500.0
+SECONDS, MEGABYTES = 60.0, 500.0
+# of processor time: an end, on any machine; tests/fuzz/urdf_campaign.py measures against 2 s
 
 READS = """
 import json, sys, time

@@ -190,7 +190,8 @@ class LlvmExecutable:
         self.one = python_function(engine.get_function_address("one"))
 
     def __del__(self) -> None:
-        if not sys.is_finalizing():
+        # While the interpreter ends, modules are gone or going, and the process gives the memory back anyway.
+        if sys is not None and not sys.is_finalizing():
             with COMPILING:
                 self._engine.close()
 
