@@ -104,6 +104,7 @@ def test_the_audit_is_the_same_every_time(of_the_paper, paper) -> None:
 # Planted misprints
 
 
+@pytest.mark.slow
 def test_planted_misprints_are_found_and_named() -> None:
     """As `python -m tests.fuzz.misprint_campaign`, which has 1,000 of them."""
     cases = [misprint_campaign.case(seed) for seed in range(100)]

@@ -58,6 +58,7 @@ def resident() -> float:
     return int(Path("/proc/self/statm").read_text().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 1e6
 
 
+@pytest.mark.slow
 @pytest.mark.usefixtures("no_cache")
 def test_kernels_that_are_given_up_leave_no_memory_taken() -> None:
     model, zero = rttrr_pin.load("rttrr").model, np.zeros(5)

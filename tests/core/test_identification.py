@@ -101,6 +101,7 @@ def test_basis_and_map_are_the_exact_ones(name: str) -> None:
     np.testing.assert_array_equal(base.map == 0.0, exact == 0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("effects", [False, True])
 @pytest.mark.parametrize("name", [*BUNDLED, *TREES])
 def test_they_are_as_many_as_the_regressors_rank_and_give_the_same_forces(name: str, effects: bool) -> None:

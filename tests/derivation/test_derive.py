@@ -243,7 +243,7 @@ def test_formulas_read_again_give_what_pinocchio_gives(read: tuple[tuple[str, st
     assert_pinocchios(name, ours)
 
 
-@pytest.mark.parametrize("case", CASES, ids=IDS)
+@pytest.mark.parametrize("case", slow_but(FAST, CASES), ids=IDS)
 def test_lines_fit_the_page_and_braces_balance(case: tuple[str, str, str]) -> None:
     text = written(case, "latex")
     assert text.count("{") - text.count(r"\{") == text.count("}") - text.count(r"\}")
@@ -295,6 +295,7 @@ def test_the_document_compiles_and_fits_its_pages(case: str, tmp_path: Path) -> 
     assert text.count("\n") / 60 < found.pages < text.count("\n") / 35 + 2
 
 
+@pytest.mark.slow
 def test_names_from_a_file_stand_in_every_document() -> None:
     """ParameterSymbols of any alphabet are kept; what could end a comment, or begin a command, is not."""
     for language, writer in WRITERS.items():

@@ -84,6 +84,7 @@ def words_of(command: str, tmp_path: Path) -> list[str]:
     return [word.format(robot=folder / "\u00fc.urdf", folder=folder) for word in COMMANDS[command]]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", COMMANDS)
 @pytest.mark.parametrize("encoding", ["ascii", "latin-1"])
 def test_a_terminal_that_lacks_letters_gets_them_escaped(
@@ -109,6 +110,7 @@ def test_a_full_disk_behind_the_output_is_an_error(
     assert "standard output: No space left on device" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", [name for name in COMMANDS if name not in ("derive", "new")])
 def test_who_prints_nothing_needs_no_output(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     words = [*words_of(command, tmp_path), "--quiet", "--json", str(tmp_path / "out.json")]

@@ -87,6 +87,7 @@ FLOODS: dict[str, Callable[[], str]] = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("flood", FLOODS)
 def test_no_file_takes_long_or_much(flood: str, tmp_path: Path) -> None:
     path = tmp_path / "flood.urdf"

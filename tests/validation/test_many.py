@@ -147,6 +147,7 @@ def test_options_of_one_robot_are_refused(folder: Path, capsys: pytest.CaptureFi
     assert f"{words[0]} goes with one robot" in capsys.readouterr().err
 
 
+@pytest.mark.slow
 def test_the_bundled_arms_all_agree(repository: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["validate", str(repository / "urdf"), "--states", "200"]) == 0
     assert "10 agree" in capsys.readouterr().out

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import islice
+from math import copysign
 
 import numpy as np
 
@@ -128,7 +129,7 @@ def mimicked(mimic: Mimic, followed: JointState, arithmetic: Arithmetic) -> Join
     """The state of a mimic joint: multiplier q + offset, and its time derivatives."""
     rounded = UNIT_ROUNDOFF if mimic.rounded else 0.0
     multiplier, offset = (arithmetic.number(x, rounded * abs(x)) for x in (mimic.multiplier, mimic.offset))
-    sign = arithmetic.number(float((mimic.multiplier > 0) - (mimic.multiplier < 0)), 0.0)
+    sign = arithmetic.number(copysign(mimic.multiplier != 0, mimic.multiplier), 0.0)
     (q,), (v,), (a,) = followed.q, followed.v, followed.a
     return JointState([q * multiplier + offset], [v * multiplier], [a * multiplier], [v * sign])
 
