@@ -24,6 +24,7 @@ from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.solids import Box, Cylinder, RigidBody
 from rttrr_pin.errors import InputError, UnknownNameError, UrdfError
 from rttrr_pin.inspection import CHECKS, PARSERS, RULES, Inspection, Severity, inspect, repair
+from rttrr_pin.inspection.run import count_errors, inspect_document
 from rttrr_pin.inspection.shapes import find_mesh, looks_of
 from rttrr_pin.reporting.files import as_json
 from rttrr_pin.urdf.parser import read_document
@@ -204,6 +205,16 @@ def test_a_check_finds_what_it_is_for(check: str, case: int) -> None:
     for found in inspect(rttrr_pin.load(text), select=[check]).findings:
         assert found.reason and found.fix
         assert found.line >= (0 if found.kind == "robot" else 1)
+
+
+@pytest.mark.parametrize("check", CASES)
+def test_errors_are_counted_without_looking_at_meshes(check: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    twice = '<robot name="r"><link name="a"/><link name="b"/><joint name="j" type="revolute"><parent link="a"/>'
+    twice += '<child link="b"/><axis xyz="1 0 0"/><axis xyz="0 1 0"/></joint></robot>'  # a warning, were they equal
+    documents = [read_document(text, tolerant=True) for text in (twice, *(text for text, _ in CASES[check]))]
+    wanted = [inspect_document(document).counts[Severity.ERROR] for document in documents]
+    monkeypatch.setattr("rttrr_pin.inspection.checks.looks_of", lambda *_: pytest.fail("a mesh was opened"))
+    assert [count_errors(document) for document in documents] == wanted
 
 
 @pytest.mark.parametrize("name", HEALTHY)

@@ -19,7 +19,7 @@ from rttrr_pin.inspection import physics, plausibility, report, structure
 from rttrr_pin.inspection.bodies import LinkRow, centre_of_mass, tree
 from rttrr_pin.inspection.cases import cases
 from rttrr_pin.inspection.checks import Check, Edit, Finding, Severity, Subject
-from rttrr_pin.inspection.file_faults import FILE_CHECKS
+from rttrr_pin.inspection.file_faults import FILE_CHECKS, FaultCheck
 from rttrr_pin.inspection.parser_rules import merged_links
 from rttrr_pin.inspection.parsers import Verdict, verdicts
 from rttrr_pin.inspection.readings import cause_of
@@ -156,6 +156,18 @@ def inspect_document(
             verdicts=verdicts(document),
             text=document.file_text,
         )
+
+
+def count_errors(document: UrdfDocument) -> int:
+    """How many errors `inspect` finds in a file.
+
+    Meshes are not opened, which can take longer than a comparison of torques: no check that needs them finds errors.
+    """
+    subject = Subject(document, None)
+    checks = (check for check in CHECKS if check.severity is Severity.ERROR or isinstance(check, FaultCheck))
+    with np.errstate(all="ignore"):
+        findings = _once(finding for check in checks for finding in check.findings(subject))
+    return sum(finding.severity is Severity.ERROR for finding in findings)
 
 
 OF_TENSOR = ("P102", "P104", "P105", "G205", "P106", "G201", "G202", "G209", "P108", "P107")

@@ -109,10 +109,9 @@ def _faults(robot: Robot, source: str) -> list[str]:
     document = robot.model.document
     if not isinstance(document, UrdfDocument):
         return []
-    from rttrr_pin.inspection.checks import Severity
-    from rttrr_pin.inspection.run import inspect_document
+    from rttrr_pin.inspection.run import count_errors
 
-    errors = inspect_document(document).counts[Severity.ERROR]
+    errors = count_errors(document)
     found = "1 error" if errors == 1 else f"{errors} errors"
     return [f"inspect finds {found} in this file: {shlex.join(['rttrr-pin', 'inspect', source])}"] if errors else []
 
