@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any
+
 from rttrr_pin.core.scalars import EPS
 from rttrr_pin.validation.compare import Comparison, Row
-from rttrr_pin.validation.many import BASES, Entry, Task, validate_many
 from rttrr_pin.validation.run import ReferenceSummary, Validation, validate
 from rttrr_pin.validation.sampling import SAMPLINGS, Sampler
 from rttrr_pin.validation.state import StateComparison, StateReport, compare_state
+
+if TYPE_CHECKING:
+    from rttrr_pin.validation.many import BASES, Entry, Task, validate_many
 
 __all__ = [
     "BASES",
@@ -26,3 +30,12 @@ __all__ = [
     "validate",
     "validate_many",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    """Names of `many`, which loads multiprocessing: one robot does without."""
+    if name not in ("BASES", "Entry", "Task", "validate_many"):
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    from rttrr_pin.validation import many
+
+    return getattr(many, name)

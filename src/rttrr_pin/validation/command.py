@@ -121,7 +121,7 @@ def _validate_several(
 ) -> int:
     """One table for many robots."""
     from rttrr_pin.validation.many import BASES, Task, many_data, validate_many
-    from rttrr_pin.validation.report import show_many
+    from rttrr_pin.validation.report_many import show_many
 
     own = ("--subject", "--reference", "--seed", "--sampling")
     allowed = (*own, "--xacro", "--xacro-arg", "--lenient", "--no-mimic", "--package")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from itertools import groupby
 from typing import TYPE_CHECKING
@@ -19,7 +18,6 @@ from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.exact import Adjudication, Assessment, Deviation
 from rttrr_pin.implementations import Evaluation
 from rttrr_pin.validation.compare import ADJUDICATED, Row
-from rttrr_pin.validation.many import Entry, Task
 from rttrr_pin.validation.run import Validation
 from rttrr_pin.validation.state import StateComparison, StateReport
 
@@ -109,8 +107,8 @@ def _numbers_of(row: Row) -> list[str]:
     error = f"{row.absolute.value:.1e} {row.unit}"
     return [
         error,
-        _in_eps(row.relative.value) if row.relative.value else "-",
-        _ratio(row.of_tolerance.value),
+        in_eps(row.relative.value) if row.relative.value else "-",
+        ratio(row.of_tolerance.value),
         str(row.of_tolerance.state),
     ]
 
@@ -121,15 +119,17 @@ def _cell(row: Row | None) -> Text:
         return Text("")
     if row.absolute.value == 0.0:
         return Text("equal")
-    cell = Text(_ratio(row.of_tolerance.value))
+    cell = Text(ratio(row.of_tolerance.value))
     return cell if row.passed else cell.append(" ").append_text(word(False))
 
 
-def _ratio(value: float) -> str:
+def ratio(value: float) -> str:
+    """Error over tolerance, or over a bound."""
     return f"{value:.3f}" if value < 1e4 else f"{value:.1e}"
 
 
-def _in_eps(value: float) -> str:
+def in_eps(value: float) -> str:
+    """A relative error in eps."""
     return f"{value:.1f}" if value < 1e5 else f"{value:.1e}"
 
 
@@ -194,14 +194,14 @@ def who_is_right(adjudication: Adjudication, passed: bool = False) -> str:
 def _wrong(assessment: Assessment, passed: bool) -> str:
     first = assessment.first_wrong or assessment.farthest
     if passed:
-        times = f"{_ratio(first.of_allowance)} of what its own rounding explains"
+        times = f"{ratio(first.of_allowance)} of what its own rounding explains"
         return f"{assessment.name} is off by {_off(first)}, {times} and within what that of both does"
     return f"{assessment.name} is wrong by {_off(first)}, first there"
 
 
 def _off(deviation: Deviation) -> str:
     """How far off, and where: in eps of the true value, or in its unit where that is zero to rounding."""
-    size = f"{_in_eps(deviation.eps)} eps" if deviation.relative else f"{deviation.error:.1e} {deviation.unit}"
+    size = f"{in_eps(deviation.eps)} eps" if deviation.relative else f"{deviation.error:.1e} {deviation.unit}"
     return (
         f"{size} at {deviation.quantity} of {deviation.at}{'' if deviation.relative else ', which is zero to rounding'}"
     )
@@ -245,13 +245,13 @@ def _show_comparison(report: StateReport, comparison: StateComparison, console: 
             Text(f"{row.at} [{row.unit}]" if row.quantity == "tau" else row.at),
             *("\n".join(f"{x:.15g}" for x in side) for side in (subject, reference)),
             f"{one.error[0]:.1e}",
-            _in_eps(one.relative[0]) if one.known[0] or not one.error[0] else "-",
+            in_eps(one.relative[0]) if one.known[0] or not one.error[0] else "-",
             word(bool(one.of_tolerance[0] <= 1.0)),
         )
     console.print(table)
     ratios = [float(one.of_tolerance[0]) for one in comparison.differences]
     worst = comparison.rows[int(np.argmax(ratios))]
-    closest = f"largest error / tolerance: {_ratio(max(ratios))} in {worst.quantity} at {worst.at}"
+    closest = f"largest error / tolerance: {ratio(max(ratios))} in {worst.quantity} at {worst.at}"
     console.print(word(comparison.passed), Text(closest))
 
 
@@ -285,33 +285,3 @@ def show_search(worst: WorstCase, console: Console) -> None:
     console.print(word(worst.passed), Text(worst.summary().partition(" ")[2]), soft_wrap=True)
     for note in worst.notes:
         console.print(Text(note, "dim"), soft_wrap=True)
-
-
-LOOK = {"agree": word(True), "disagree": word(False), "unusable": Text("FILE", "bold yellow")}
-
-
-def show_many(entries: Sequence[Entry], task: Task, seconds: float, console: Console) -> None:
-    """A row for each robot, then what stops those that were not compared, then the sum."""
-    robots = len(entries) // len({entry.base for entry in entries})
-    states = f"{task.n_states:,} {task.sampling} states each, seed {task.seed}"
-    console.print(Text(f"{robots} robots, {task.subject} against {task.reference}: {states}"))
-    table = Table("robot", "base", "joints", "links", "relative (eps)", "error / tolerance", "verdict")
-    for column in table.columns[2:6]:
-        column.justify = "right"
-    for entry in entries:
-        numbers = (str(entry.joints), str(entry.links), _in_eps(entry.eps), _ratio(entry.of_tolerance))
-        table.add_row(Text(entry.name), entry.base, *(numbers if entry.links else [""] * 4), LOOK[entry.verdict])
-    console.print(table)
-    console.print(Text("relative: worst normwise error over all links", "dim"))
-    defects = dict.fromkeys(f"{entry.name}: {entry.defect}" for entry in entries if entry.defect)
-    worst = (entry for entry in entries if entry.verdict == "disagree" and entry.worst)
-    notes = dict.fromkeys(f"{entry.name}: {note}" for entry in entries for note in entry.notes)
-    for line in (*notes, *defects, *(f"{entry.name}, {entry.base} base: worst {entry.worst}" for entry in worst)):
-        console.print(Text(line), soft_wrap=True)
-    counts = Counter[str](entry.verdict for entry in entries)
-    console.print(
-        Text(
-            f"{counts['agree']} agree, {counts['disagree']} disagree, {counts['unusable']} stopped by their file, "
-            f"{len(entries)} in all ({seconds:.0f} s)"
-        )
-    )
