@@ -26,6 +26,9 @@ from typing import Any
 
 from common import arguments, finish
 
+sys.path.append(str(Path(__file__).parents[1] / "tests"))
+from support.processes import of_session
+
 ROBOTS = Path(__file__).parents[1] / "urdf"
 
 COMMANDS: dict[str, list[str]] = {
@@ -59,19 +62,6 @@ def start(words: list[str], folder: Path, cache: Path) -> subprocess.Popen[str]:
         start_new_session=True,
         preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL) and None,
     )
-
-
-def of_session(session: int) -> list[int]:
-    """The processes of a session that still run."""
-    found = []
-    for place in Path("/proc").glob("[0-9]*"):
-        try:
-            state, _, _, own = (place / "stat").read_text().rpartition(")")[2].split()[:4]
-        except (OSError, ValueError):
-            continue
-        if int(own) == session and state != "Z":
-            found.append(int(place.name))
-    return found
 
 
 def whole(path: Path, wanted: str) -> bool:

@@ -16,11 +16,12 @@ from rttrr_pin.compile.constants import error_of
 from rttrr_pin.compile.trace import TRACING_WITH_ERRORS
 from rttrr_pin.core.dynamics import body_of
 from rttrr_pin.core.joint import Joint, Lock
-from rttrr_pin.core.joints import CONTINUOUS, FIXED, PLANAR, REVOLUTE
+from rttrr_pin.core.joints import FIXED, REVOLUTE
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.errors import InputError, NumberError, ShapeError, UnknownNameError
 from rttrr_pin.urdf.altered import with_fixed
 from rttrr_pin.validation import Sampler
+from support.pinocchio_states import pin_model, pin_q
 from support.recursion import recursion
 from support.serial_chains import random_chain
 from support.tolerances import EPS, ROUNDING, norm_error
@@ -41,22 +42,6 @@ def tree(seed: int, mimics: bool, base: Any = "fixed", types: tuple[str, ...] = 
 def drawn(robot: Robot, seed: int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     states = Sampler(robot.model, "mixed", seed).draw(0, STATES)
     return states.q.copy(), states.v.copy(), states.a.copy()
-
-
-def pin_model(robot: Robot) -> Any:
-    root = (pin.JointModelFreeFlyer(),) if robot.model.floating else ()
-    return pin.buildModelFromXML(robot.model.urdf, *root)
-
-
-def pin_q(robot: Robot, q: np.ndarray) -> np.ndarray:
-    """One state in Pinocchio's coordinates."""
-    out: list[float] = []
-    at = 0
-    for joint in robot.model.moving:
-        own = q[at : at + joint.nq].tolist()
-        at += joint.nq
-        out += [*own[:-1], np.cos(own[-1]), np.sin(own[-1])] if joint.type in (CONTINUOUS, PLANAR) else own
-    return np.array(out)
 
 
 # A body that is carried

@@ -10,9 +10,9 @@ import pytest
 
 import rttrr_pin
 from rttrr_pin import Robot, Wrench
-from rttrr_pin.core.joints import CONTINUOUS, PLANAR
 from rttrr_pin.errors import InputError, ShapeError, UnknownNameError
 from rttrr_pin.validation import Sampler
+from support.pinocchio_states import pin_model, pin_q
 from support.recursion import recursion
 from support.tolerances import ROUNDING, norm_error
 from support.trees import random_tree
@@ -27,22 +27,11 @@ def drawn(robot: Robot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return states.q, states.v, states.a
 
 
-def pin_q(robot: Robot, q: np.ndarray) -> np.ndarray:
-    out: list[float] = []
-    at = 0
-    for joint in robot.model.moving:
-        own = q[at : at + joint.nq].tolist()
-        at += joint.nq
-        out += [*own[:-1], np.cos(own[-1]), np.sin(own[-1])] if joint.type in (CONTINUOUS, PLANAR) else own
-    return np.array(out)
-
-
 @pytest.mark.parametrize("base", ["fixed", "floating"])
 @pytest.mark.parametrize("seed", range(3))
 def test_jacobians_and_placements_are_pinocchios(seed: int, base: Any) -> None:
     robot = rttrr_pin.load(random_tree(seed, 6, mimics=False), base=base)
-    root = (pin.JointModelFreeFlyer(),) if base == "floating" else ()
-    model = pin.buildModelFromXML(robot.model.urdf, *root)
+    model = pin_model(robot)
     data = model.createData()
     q = drawn(robot)[0]
     parts = robot.compile(("link_jacobians", "link_placements"))(q)
