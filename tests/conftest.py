@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,17 @@ import rttrr_pin
 from rttrr_pin import Robot
 from rttrr_pin.compile import cache
 from support.serial_chains import EXAMPLES
+
+
+@pytest.hookimpl(tryfirst=True)  # before the expression of -m chooses
+def pytest_collection_modifyitems(items: Sequence[pytest.Item]) -> None:
+    """Of a test marked `one_in(n)` the README's line runs each n-th case; the others are slow."""
+    cases = Counter[str]()
+    for item in items:
+        name = item.nodeid.partition("[")[0]
+        if (mark := item.get_closest_marker("one_in")) is not None and cases[name] % mark.args[0]:
+            item.add_marker("slow")
+        cases[name] += 1
 
 
 @pytest.fixture(scope="session", autouse=True)

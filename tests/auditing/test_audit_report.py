@@ -65,6 +65,7 @@ def shown(show, result: AuditResult, width: int = 80, **given) -> str:
 # Counting
 
 
+@pytest.mark.slow
 def test_totals_add_up(of_the_paper: AuditResult) -> None:
     totals = of_the_paper.totals
     assert totals.components == sum(totals.verdicts.values()) == len(of_the_paper.components)

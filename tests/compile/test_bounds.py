@@ -150,17 +150,20 @@ def check(
                 assert (error <= result[key + "_bound"][k]).all(), (key, k)
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("seed", slow_after(2, range(6)))
 @pytest.mark.parametrize("base", ["fixed", "floating"])
 def test_no_true_error_exceeds_its_bound_in_trees(seed: int, base: Any) -> None:
     check(rttrr_pin.load(random_tree(seed, 7), base=base, friction=True), "mixed", seed)
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("sampling", slow_after(2, ["uniform", "large-velocities", "corners", "zeros", "one-joint"]))
 def test_no_true_error_exceeds_its_bound(robot: Robot, sampling: str) -> None:
     check(robot, sampling, 3)
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("seed", slow_after(2, range(12)))
 @pytest.mark.parametrize("base", ["fixed", "floating"])
 def test_no_true_error_exceeds_its_bound_where_inertia_was_moved(seed: int, base: Any) -> None:
@@ -168,6 +171,7 @@ def test_no_true_error_exceeds_its_bound_where_inertia_was_moved(seed: int, base
     check(rttrr_pin.load(random_tree(seed, 7), base=base, friction=True), "mixed", seed, quantities=("tau",))
 
 
+@pytest.mark.one_in(2)
 def test_no_true_error_exceeds_its_bound_for_tau_alone(robot: Robot) -> None:
     check(robot, "uniform", 6, quantities=("tau",))
 
@@ -184,6 +188,7 @@ def check_file(urdf: str, quantities: tuple[str, ...] = FIVE, count: int = 40) -
         assert (off <= result[name + "_bound"]).all(), name
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("quantities", [FIVE, ("tau",)], ids="-".join)
 @pytest.mark.parametrize("seed", slow_after(2, range(12)))
 def test_bounds_cover_what_reading_the_file_rounds(seed: int, quantities: tuple[str, ...]) -> None:
@@ -247,6 +252,7 @@ def test_tau_is_that_of_the_plain_kernel(rttrr: Robot) -> None:
     np.testing.assert_array_equal(plain, result["tau"])
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("emitter", sorted(EMITTERS))
 def test_every_emitter_computes_bounds(emitter: str) -> None:
     check(rttrr_pin.load(random_chain(1, ("revolute", "prismatic", "continuous"))), "uniform", 0, emitter)
@@ -274,6 +280,7 @@ def test_a_bound_without_one_of_its_parts_is_exceeded(monkeypatch, what: str) ->
         check(robot, "uniform", 1, "numpy" if what == "rounding" else "c")
 
 
+@pytest.mark.one_in(4)
 def test_values_lie_within_their_bounds_of_the_plain_kernel_s(robot: Robot) -> None:
     """Rotations from the file have an error even where they are 0 or 1, so what is folded may differ."""
     states = Sampler(robot.model, "uniform", 7).draw(0, 100)

@@ -85,6 +85,7 @@ def test_trees_of_all_joints_followers_drives_and_payloads(seed: int, base: str,
         assert_equal(ours, recursion(robot, s.q, s.v, s.a, wrenches))
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("seed", slow_after(1, range(2)))
 @pytest.mark.parametrize("name", OF_STEPS)
 def test_each_output_alone_is_that_of_straight_lines(name: str, seed: int) -> None:
@@ -169,6 +170,7 @@ def test_columns_are_used_again() -> None:
     assert (large.between - small.between) / 100 <= 9 + 3 + 3
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("size", [1, 8, 64])
 def test_the_same_bits_in_any_block_layout_or_thread(size: int, monkeypatch: pytest.MonkeyPatch) -> None:
     robot = rttrr_pin.load(random_tree(3, 30), friction=True)

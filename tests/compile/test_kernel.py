@@ -617,6 +617,7 @@ def rough(rttrr: Robot) -> Robot:
 NOT_FINITE = (np.nan, np.inf, -np.inf)
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("value", slow_after(1, NOT_FINITE))
 @pytest.mark.parametrize("name", QUANTITIES)
 def test_what_is_not_finite_is_found_in_every_input(rough: Robot, name: str, value: float, emitter: str) -> None:
@@ -916,6 +917,7 @@ def calls_of(made: Kernel) -> dict[str, Callable[[], Any]]:
     }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("case", slow_but(("batch", "payload", "error"), calls_of(None)))  # type: ignore[arg-type]
 def test_calls_leave_nothing_behind(rttrr: Robot, case: str) -> None:
     """No reference to an argument, to None or to True, and no memory that grows with the count of calls."""

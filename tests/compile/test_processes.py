@@ -40,6 +40,7 @@ for thread in threads:
 """
 
 
+@pytest.mark.slow
 def test_a_fork_while_a_kernel_compiles_leaves_a_child_that_can_compile() -> None:
     environment = os.environ | {cache.VARIABLE: ""}
     done = subprocess.run([sys.executable, "-W", "ignore", "-c", FORKS], env=environment, timeout=600, check=False)

@@ -70,6 +70,7 @@ def pin_coordinates(robot: Robot, q: np.ndarray) -> np.ndarray:
     return np.stack(columns, axis=1)
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("case", slow_but(("rttrr", "trr", "floating-tree", "planar-joints"), ROBOTS))
 def test_mass_matrix_is_pinocchios(case: str) -> None:
     _, _, ours = made(case)
@@ -80,6 +81,7 @@ def test_mass_matrix_is_pinocchios(case: str) -> None:
         assert norm_error(ours["mass_matrix"][k], upper + np.triu(upper, 1).T) <= ROUNDING
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("case", ROBOTS)
 def test_mass_matrix_is_symmetric_to_the_last_bit_and_positive_definite(case: str) -> None:
     """Semidefinite where the floating link has no inertia of its own: then it turns with the first joint for nothing."""

@@ -174,6 +174,7 @@ def test_the_condition_number_tells_a_poor_trajectory(rttrr: Robot) -> None:
     assert base.condition(Y[:1]) == np.inf
 
 
+@pytest.mark.slow
 def test_columns_of_armature_and_friction_are_what_the_joints_take() -> None:
     """Of followers too, by virtual work."""
     for text in TREES.values():

@@ -175,6 +175,7 @@ def written_tensor(text: str) -> Array:
     return written.inertia
 
 
+@pytest.mark.slow
 @settings(max_examples=200, deadline=None)
 @given(BODIES, st.sampled_from(ALL))
 def test_no_wrong_cause_is_named(body: Body, slip: tuple[str, Slip]) -> None:

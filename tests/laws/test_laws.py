@@ -40,6 +40,7 @@ def broken(report: LawReport) -> list[str]:
     return [row.law.id for row in report.violated]
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("base", BASES)
 @pytest.mark.parametrize("name", BUNDLED)
 def test_laws_hold_on_bundled_arms(name: str, base: Any) -> None:
@@ -137,6 +138,7 @@ def test_every_law_is_violated_by_an_error_that_breaks_it(tree: Robot, law: str)
     assert row.violations == 2 and row.error_over_bound.value > 1e6
 
 
+@pytest.mark.slow
 def test_every_error_is_found_by_a_law(tree: Robot) -> None:
     """Also those in the tenth digit of one term; without the laws of the mass matrix, which take long."""
     batch = Sampler(tree.model, payload=RandomPayload(tree.link_names[-1])).draw(0, 1)

@@ -100,6 +100,7 @@ def test_a_terminal_that_lacks_letters_gets_them_escaped(
     assert codes[0] == codes[1] < 2
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_full_disk_behind_the_output_is_an_error(
     command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
@@ -133,6 +134,7 @@ def test_names_of_three_hundred_letters_are_told_to_be_too_long(
     assert "File name too long" in error and len(error) < 500
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("command", ["inspect", "state", "audit"])
 def test_warnings_of_other_libraries_are_no_tracebacks(command: str, tmp_path: Path) -> None:
     words = [sys.executable, "-W", "error", "-m", "rttrr_pin", *words_of(command, tmp_path)]

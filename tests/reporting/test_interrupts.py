@@ -125,6 +125,7 @@ def test_the_exit_code_is_the_signals_where_a_library_has_swallowed_it(
     assert capsys.readouterr().err == f"{interrupts.ENDING[number]}: nothing was written\n"
 
 
+@pytest.mark.slow
 def test_what_was_written_before_is_named(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -169,6 +170,7 @@ def folder(tmp_path: Path) -> Path:
     return place
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL], ids=lambda number: number.name)
 @pytest.mark.parametrize("whom", ["the program", "its group"])
 def test_no_worker_outlives_the_program(number: signal.Signals, whom: str, folder: Path, tmp_path: Path) -> None:

@@ -69,6 +69,7 @@ COMMANDS: dict[str, Callable[[Path], list[str]]] = {
 }
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("command", COMMANDS)
 def test_no_command_runs_what_stands_in_a_file_unless_it_is_asked(
     command: str, folder: Path, marker: Path, capsys: pytest.CaptureFixture[str]

@@ -51,6 +51,7 @@ def test_the_outcome_does_not_depend_on_the_workers(folder: Path) -> None:
     assert outcomes[0] == outcomes[1]
 
 
+@pytest.mark.slow
 def test_a_worker_that_is_killed_costs_one_robot(folder: Path) -> None:
     """As where memory runs out: what it was at is named, and all else goes on."""
     (folder / "more.urdf").write_text(EXAMPLES["one-joint"])

@@ -41,6 +41,7 @@ def test_any_of_them_can_be_the_subject_or_the_reference(rttrr: Robot, subject: 
     assert [row.of_tolerance for row in one.rows] == [row.of_tolerance for row in other.rows]
 
 
+@pytest.mark.one_in(3)
 def test_no_worst_error_is_beyond_500_eps(robot: Robot) -> None:
     """Normwise, per link."""
     result = validate(robot, n_states=2000, seed=3)
@@ -126,6 +127,7 @@ def test_gravity_of_another_model_is_seen(rttrr: Robot) -> None:
     assert not any(quantity == "N" for quantity, _ in failed)
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("number", ["mass", "com", "inertia", "p"])
 @pytest.mark.parametrize("link", [0, 2, 4])
 def test_an_error_of_1e_10_in_one_number_is_seen(rttrr: Robot, number: str, link: int) -> None:
