@@ -8,10 +8,13 @@ from __future__ import annotations
 import os
 import threading
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 from rttrr_pin.core.inputs import whole_number
+
+if TYPE_CHECKING:
+    from concurrent.futures import Future, ThreadPoolExecutor
 
 COMPILING = threading.RLock()
 """Held while a program is compiled, loaded or given up. A fork waits for it: a child that was forked in the middle
@@ -59,4 +62,6 @@ def run(task: Callable[[int, int], bool], rows: int, threads: int) -> bool:
 @lru_cache(maxsize=4)
 def _pool(threads: int, process: int) -> ThreadPoolExecutor:
     """Threads that wait for work; a forked process gets its own."""
+    from concurrent.futures import ThreadPoolExecutor  # not needed where one thread does
+
     return ThreadPoolExecutor(threads, thread_name_prefix="rttrr-pin")

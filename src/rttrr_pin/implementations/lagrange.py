@@ -24,9 +24,9 @@ force on one. So it gives tau alone.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from importlib import metadata
 from typing import TYPE_CHECKING
 
+from rttrr_pin import __version__
 from rttrr_pin.core.algebra import Scalar, Vector
 from rttrr_pin.core.dual import Dual, part_of, value_of
 from rttrr_pin.core.dynamics import bodies, joint_states
@@ -53,7 +53,7 @@ class Lagrange:
     """Lagrange's equations on our own model, run on (value, bound) scalars: its rounding comes with it."""
 
     name = "lagrange"
-    version: str = metadata.version("rttrr-pin")
+    version: str = __version__
     quantities: tuple[str, ...] = ("tau",)
 
     def __init__(self, model: Model) -> None:

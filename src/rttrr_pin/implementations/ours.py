@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from contextlib import suppress
-from importlib import metadata
 
 import numpy as np
 
+from rttrr_pin import __version__
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.wrench import QUANTITIES, RESULTS
 from rttrr_pin.errors import NumberError
@@ -18,7 +18,7 @@ class Recursion:
     """The reference recursion on floats, each operation with its running error bound."""
 
     name = "recursion"
-    version: str = metadata.version("rttrr-pin")
+    version: str = __version__
     quantities = QUANTITIES
 
     def __init__(self, model: Model) -> None:
@@ -34,7 +34,7 @@ class CompiledKernel:
     """What `Robot.inverse_dynamics` runs; its allowance is the running error bound of the same formulas."""
 
     name = "kernel"
-    version: str = metadata.version("rttrr-pin")
+    version: str = __version__
     quantities = QUANTITIES
 
     def __init__(self, model: Model) -> None:

@@ -7,13 +7,14 @@ another package, an entry point of the group `rttrr_pin.implementations` that na
 from __future__ import annotations
 
 import os
+import pkgutil
 import shlex
 import shutil
 import sys
 from collections.abc import Callable, Sequence
-from importlib import import_module, metadata
+from importlib import import_module
 from pathlib import Path
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from rttrr_pin.core.model import Model
 from rttrr_pin.errors import ImplementationError, InputError, RttrrError, UnknownNameError
@@ -21,6 +22,9 @@ from rttrr_pin.implementations.function import Function
 from rttrr_pin.implementations.program import Program
 from rttrr_pin.implementations.protocol import Implementation
 from rttrr_pin.implementations.table import READERS, Table
+
+if TYPE_CHECKING:
+    from importlib.metadata import EntryPoint, EntryPoints
 
 BUILT_IN = {
     "kernel": "rttrr_pin.implementations.ours:CompiledKernel",
@@ -43,7 +47,7 @@ Source: TypeAlias = str | os.PathLike[str] | Implementation | Callable[..., Any]
 
 def names() -> list[str]:
     """The implementations that have a name here."""
-    return [*BUILT_IN, *(point.name for point in metadata.entry_points(group=GROUP) if point.name not in BUILT_IN)]
+    return [*BUILT_IN, *(point.name for point in _registered() if point.name not in BUILT_IN)]
 
 
 def make_implementation(source: Source, model: Model) -> Implementation:
@@ -72,7 +76,7 @@ def make_implementation(source: Source, model: Model) -> Implementation:
     text = os.fspath(source)
     if text in BUILT_IN:
         return _imported(text)(model)
-    for point in metadata.entry_points(group=GROUP):
+    for point in _registered():
         if point.name == text:
             return _of_package(point, model)
     if Path(text).suffix.lower() in READERS:
@@ -107,7 +111,14 @@ def _imported(name: str) -> Callable[..., Implementation]:
     return factory
 
 
-def _of_package(point: metadata.EntryPoint, model: Model) -> Implementation:
+def _registered() -> EntryPoints:
+    """What other packages register."""
+    from importlib.metadata import entry_points  # large, and no built-in name needs it
+
+    return entry_points(group=GROUP)
+
+
+def _of_package(point: EntryPoint, model: Model) -> Implementation:
     """What another package registered."""
     try:
         implementation: Implementation = point.load()(model)
@@ -131,7 +142,7 @@ def _of_module(text: str) -> Any:
     if folder not in sys.path:
         sys.path.insert(0, folder)
     try:
-        return metadata.EntryPoint(text, text, GROUP).load()
+        return pkgutil.resolve_name(text)
     except Exception as error:  # the user's own code runs here
         raise ImplementationError(f"{text} cannot be imported: {type(error).__name__}: {error}") from error
 

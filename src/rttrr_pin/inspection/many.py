@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from importlib import metadata
 from pathlib import Path
 from typing import Any
 from urllib.parse import quote
 from xml.etree import ElementTree
 
+from rttrr_pin import __version__
 from rttrr_pin.errors import RttrrError
 from rttrr_pin.inspection.checks import Severity
 from rttrr_pin.inspection.parsers import RULES, Behaviour
@@ -130,7 +130,7 @@ def sarif(entries: Sequence[Entry], demands: Demands) -> dict[str, Any]:
     rules.append((UNREADABLE, "The file can be read.", "error"))
     driver = {
         "name": "rttrr-pin",
-        "version": metadata.version("rttrr-pin"),
+        "version": __version__,
         "rules": [
             {"id": id, "shortDescription": {"text": text}, "defaultConfiguration": {"level": level}}
             for id, text, level in rules

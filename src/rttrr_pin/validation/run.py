@@ -6,11 +6,11 @@ import platform
 import time
 from collections.abc import Iterable
 from dataclasses import asdict, dataclass, field
-from importlib import metadata
 from typing import Any
 
 import numpy as np
 
+from rttrr_pin import __version__
 from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.exact import Adjudication
 from rttrr_pin.implementations import Implementation, label
@@ -239,7 +239,7 @@ def validate(
 def versions(programs: Iterable[Implementation]) -> dict[str, str]:
     """What took part, so that a result can be had again."""
     return {
-        "rttrr-pin": metadata.version("rttrr-pin"),
+        "rttrr-pin": __version__,
         **{program.name: program.version for program in programs if program.version},
         "numpy": np.__version__,
         "python": platform.python_version(),
