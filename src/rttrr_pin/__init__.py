@@ -10,6 +10,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from rttrr_pin.version import __version__ as __version__
+
 if TYPE_CHECKING:
     from rttrr_pin.auditing import audit as audit
     from rttrr_pin.auditing import read_publication as read_publication
@@ -42,7 +44,6 @@ if TYPE_CHECKING:
     from rttrr_pin.validation import validate_many as validate_many
     from rttrr_pin.validation.search import search_worst_state as search_worst_state
 
-__version__ = "0.1.0"
 
 _PLACES = {
     "auditing": ("audit", "read_publication"),

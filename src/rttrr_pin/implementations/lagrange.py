@@ -26,7 +26,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from rttrr_pin import __version__
 from rttrr_pin.core.algebra import Scalar, Vector
 from rttrr_pin.core.dual import Dual, part_of, value_of
 from rttrr_pin.core.dynamics import bodies, joint_states
@@ -44,6 +43,7 @@ from rttrr_pin.core.scalars import Arithmetic, columns
 from rttrr_pin.core.tangent import TIME, in_time, over_duals, tangent
 from rttrr_pin.exact.rounding import BOUNDED, Bounded, coordinate_scalars, values_and_bounds
 from rttrr_pin.implementations.protocol import Batch, Evaluation
+from rttrr_pin.version import __version__
 
 if TYPE_CHECKING:
     from rttrr_pin.core.newton_euler import Payload

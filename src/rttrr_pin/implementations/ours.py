@@ -6,12 +6,12 @@ from contextlib import suppress
 
 import numpy as np
 
-from rttrr_pin import __version__
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.wrench import QUANTITIES, RESULTS
 from rttrr_pin.errors import NumberError
 from rttrr_pin.implementations.allowance import of_bounds
 from rttrr_pin.implementations.protocol import Batch, Evaluation, kernel_of, shape_of
+from rttrr_pin.version import __version__
 
 
 class Recursion:

@@ -10,12 +10,12 @@ from typing import Any
 from urllib.parse import quote
 from xml.etree import ElementTree
 
-from rttrr_pin import __version__
 from rttrr_pin.errors import RttrrError
 from rttrr_pin.inspection.checks import Severity
 from rttrr_pin.inspection.parsers import RULES, Behaviour
 from rttrr_pin.inspection.report import columns
 from rttrr_pin.inspection.run import CHECKS, Inspection
+from rttrr_pin.version import __version__
 
 AS_WRITTEN = (Behaviour.ACCEPT, Behaviour.WARN)
 """What a parser does that loads the robot as written."""

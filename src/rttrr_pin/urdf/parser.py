@@ -13,8 +13,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Collection, Iterable, Mapping
-from dataclasses import replace
+from collections.abc import Mapping
 from typing import Any
 
 from lxml import etree
@@ -35,16 +34,15 @@ from rttrr_pin.urdf.document import (
 )
 from rttrr_pin.urdf.elements import Element, parse_xml
 from rttrr_pin.urdf.faults import Log
+from rttrr_pin.urdf.limits import has_direction, read_limit
 from rttrr_pin.urdf.sources import AS_IT_STANDS, AnySource, Reading, find
-from rttrr_pin.urdf.vocabulary import ATTRIBUTES, LIMITS_1_2, check_words, not_modelled
+from rttrr_pin.urdf.tree import check_mimics, check_tree
+from rttrr_pin.urdf.vocabulary import ATTRIBUTES, check_words, not_modelled
 
 SUPPORTED = tuple(JOINT_TYPES)
 
 VERSIONS = ((1, 0), (1, 1), (1, 2))
 """Of the format: 1.1 brought quat_xyzw, 1.2 limits of acceleration, deceleration and jerk."""
-
-LONGEST_CHAIN = 100
-"""Joints that follow one another; to follow a chain takes time with the square of its length."""
 
 ASKED = {
     "dynamics": ("damping", "friction"),
@@ -52,9 +50,6 @@ ASKED = {
     "safety_controller": ("k_velocity", "k_position", "soft_lower_limit", "soft_upper_limit"),
 }
 """Elements of joints in which urdfdom wants numbers: one of those of <dynamics>, k_velocity, and all that are there."""
-
-UNLIMITED = "1e9"
-"""What is written for a limit that the file does not set, and urdfdom asks for."""
 
 
 def read_document(source: AnySource, reading: Reading = AS_IT_STANDS, tolerant: bool = False) -> UrdfDocument:
@@ -85,8 +80,8 @@ def read_document(source: AnySource, reading: Reading = AS_IT_STANDS, tolerant: 
     read_links = {name: _link(name, link, version) for name, link in links.items()}
     found = ((name, _joint(name, joint, version)) for name, joint in joints.items())
     read_joints = {name: joint for name, joint in found if joint is not None}
-    _check_tree(read_links, read_joints, robot, joints)
-    _check_mimics(read_joints, joints)
+    check_tree(read_links, read_joints, robot, joints)
+    check_mimics(read_joints, joints)
     not_modelled(root, log)
     _check_asked(robot, joints)
     transmissions = _transmissions(robot, joints)
@@ -248,14 +243,10 @@ def _joint(name: str, joint: Element, version: tuple[int, int]) -> UrdfJoint | N
         child=ends[1],
         origin=_placement(joint, version),
         axis=_axis(joint, joint_type),
-        limit=_limit(joint, joint_type, version),
+        limit=read_limit(joint, joint_type, version),
         mimic=_mimic(joint, joint_type),
         **_dynamics(joint),
     )
-
-
-def _has_direction(joint_type: JointType) -> bool:
-    return joint_type.has_axis or joint_type.axis_direction is not None
 
 
 def _dynamics(joint: Element) -> dict[str, Number]:
@@ -275,8 +266,8 @@ def _dynamics(joint: Element) -> dict[str, Number]:
 
 def _axis(joint: Element, joint_type: JointType) -> NumberList:
     """The axis of a joint that has one; 1 0 0 where the file does not say, or +z for a planar joint."""
-    axis = joint.child("axis", used=_has_direction(joint_type))
-    if not _has_direction(joint_type):
+    axis = joint.child("axis", used=has_direction(joint_type))
+    if not has_direction(joint_type):
         if axis is not None and (problem := axis.problem("xyz", 3)):
             axis.note("unused", problem)
         return NumberList("1 0 0")
@@ -300,60 +291,6 @@ def _axis(joint: Element, joint_type: JointType) -> NumberList:
         axis.write(xyz=default)
         return NumberList(default)
     return vector
-
-
-def _limit(joint: Element, joint_type: JointType, version: tuple[int, int]) -> dict[str, Number] | None:
-    """Those limits that the file sets; of a joint that has no use for them they may be anything."""
-    used = _has_direction(joint_type)
-    limit = joint.child("limit", used)
-    written = [key for key in ATTRIBUTES["limit"] if limit is not None and key in limit.xml.attrib]
-    if joint.log.lenient:
-        _complete_limit(joint, limit, joint_type, version)
-    if limit is None:
-        return None
-    limits_1_2 = [key for key in LIMITS_1_2 if version >= (1, 2) and key in limit.xml.attrib]
-    _check_unused(limit, limits_1_2 if used else [*written, *limits_1_2], limits_1_2)
-    numbers = {key: limit.number(key) for key in written if used or not limit.problem(key)}
-    if not used:
-        return numbers
-    for key in ("velocity", "effort"):
-        if key in numbers and float(numbers[key]) < 0.0:
-            limit.assume(
-                "limit", f"{key} limit is {float(numbers[key])}: expected a positive number", f"no {key} limit"
-            )
-            limit.write(**{key: UNLIMITED})
-            del numbers[key]
-    lower, upper = (numbers.get(key, Number("0")) for key in ("lower", "upper"))
-    if joint_type.limits != "none" and float(lower) > float(upper):
-        message = f"lower limit {float(lower)} is above the upper one, {float(upper)}: exchange them"
-        limit.assume("range", message, f"a range from {float(upper)} to {float(lower)}")
-        limit.write(lower=upper.text, upper=lower.text)
-        numbers |= {"lower": upper, "upper": lower}
-    return numbers
-
-
-def _check_unused(limit: Element, keys: Iterable[str], positive: Collection[str]) -> None:
-    """Limits that the model has no use for: urdfdom refuses what it cannot read of them."""
-    for key in keys:
-        problem = limit.problem(key)
-        if not problem and key in positive and float(limit.xml.get(key)) < 0.0:
-            problem = f"{key} limit is negative"
-        if problem:
-            limit.note("unused", problem)
-
-
-def _complete_limit(joint: Element, limit: Element | None, joint_type: JointType, version: tuple[int, int]) -> None:
-    """Write out what urdfdom asks for: what the file does not limit is unlimited."""
-    if limit is None:
-        if joint_type.limits == "required":
-            message = f'a {joint_type.name} joint has no <limit>: write <limit lower="..." upper="..." .../>'
-            joint.assume("limit", message, "no limits")
-            joint.added("limit", lower=f"-{UNLIMITED}", upper=UNLIMITED, effort=UNLIMITED, velocity=UNLIMITED)
-        return
-    missing = [key for key in ("effort", "velocity") if key not in limit.xml.attrib]
-    if missing and version < (1, 2):
-        limit.assume("limit", f"its <limit> has no {' and no '.join(missing)}", f"no {' and '.join(missing)} limit")
-        limit.write(**dict.fromkeys(missing, UNLIMITED))
 
 
 def _mimic(joint: Element, joint_type: JointType) -> UrdfMimic | None:
@@ -404,95 +341,3 @@ def _check_asked(robot: Element, joints: Mapping[str, Element]) -> None:
                     problem = "<dynamics> has neither damping nor friction"
                 if problem:
                     element.note("asked", problem)
-
-
-def _check_tree(
-    links: dict[str, UrdfLink], joints: dict[str, UrdfJoint], robot: Element, elements: Mapping[str, Element]
-) -> None:
-    """Each link but one is the child of one joint, and all hang on that one; what does not is taken out."""
-    carried = dict[str, str]()
-    for name, joint in list(joints.items()):
-        unknown = next((tag for tag in ("parent", "child") if getattr(joint, tag) not in links), None)
-        if unknown is not None:
-            link = getattr(joint, unknown)
-            fix = elements[name].nearest(link, links)
-            elements[name].error("joint", f"its {unknown} link {link!r} does not exist: {fix}", "the joint is left out")
-        elif joint.child in carried:
-            message = (
-                f"link {joint.child!r} is already the child of another joint, {carried[joint.child]!r}: a tree has one "
-                "joint for each link"
-            )
-            elements[name].assume("tree", message, "the joint is left out: the loop that it closes is not modelled")
-            elements[name].remove()
-        else:
-            carried[joint.child] = name
-            continue
-        del joints[name]
-    on_link: dict[str, list[str]] = {name: [] for name in links}
-    for joint in joints.values():
-        on_link[joint.parent].append(joint.child)
-    roots = sorted(links.keys() - carried)
-    reached = {root: _reached(root, on_link) for root in roots}
-    kept = max(reached.values(), key=len, default=_reached(next(iter(links)), on_link))
-    if len(roots) > 1:
-        rest = ", ".join(shortened(root) for root in roots[:6])
-        message = f"has {len(roots)} root links ({rest}), expected one: join them with fixed joints"
-        robot.error("tree", message, f"the {len(kept)} links on {next(iter(kept))!r} are read, the others left out")
-    # From a root no loop can be entered, since each link has one parent.
-    looped = links.keys() - set[str]().union(*reached.values())
-    if looped:
-        loop = ", ".join(sorted(looped)[:6])
-        what = "a loop of joints" if roots else "no root link, and a loop of joints"
-        message = f"has {what} through {loop}: a URDF is a tree; cut the loop at one joint"
-        left_out = f"the {len(kept)} links on {next(iter(kept))!r} are read, the others left out"
-        robot.error("loop", message, left_out)
-    for name in links.keys() - kept.keys():
-        del links[name]
-    root = next(iter(kept))
-    for name in [name for name, joint in joints.items() if joint.parent not in kept or joint.child == root]:
-        del joints[name]
-
-
-def _reached(root: str, on_link: Mapping[str, list[str]]) -> dict[str, None]:
-    """The links that hang on one, itself first."""
-    reached, waiting = dict[str, None](), [root]
-    while waiting:
-        name = waiting.pop()
-        if name not in reached:
-            reached[name] = None
-            waiting += on_link[name]
-    return reached
-
-
-def _check_mimics(joints: dict[str, UrdfJoint], elements: Mapping[str, Element]) -> None:
-    """Each <mimic> leads to a joint with one coordinate that moves by itself; one that does not is taken out."""
-    for first in list(joints):
-        followed, name = {first: None}, first
-        while (mimic := joints[name].mimic) is not None and joints[name].moves:
-            # The fault stands at the link of the chain that is wrong, be it another joint's <mimic>.
-            if problem := _followed(elements[name], name, mimic.joint, joints, followed):
-                element = elements[name].children("mimic")[0]
-                element.assume("mimic", problem, f"joint {name!r} moves by itself")
-                element.remove()
-                joints[name] = replace(joints[name], mimic=None)
-                break
-            name = mimic.joint
-            followed[name] = None
-
-
-def _followed(
-    element: Element, name: str, target: str, joints: Mapping[str, UrdfJoint], followed: Mapping[str, None]
-) -> str:
-    """Why a joint cannot follow another; empty if it can."""
-    if not target:
-        return "<mimic> has no joint, expected the name of the joint to follow"
-    if target not in joints:
-        return f"follows joint {target!r}, which does not exist: {element.nearest(target, joints)}"
-    for follower in (name, target):
-        if JOINT_TYPES[joints[follower].type].nq != 1:
-            return f"joint {follower!r} is {joints[follower].type}: only joints with one coordinate follow"
-    if target in followed:
-        return f"follows itself through {' -> '.join([*followed, target])}: let one of them move by itself"
-    if len(followed) >= LONGEST_CHAIN:
-        return f"follows through more than {LONGEST_CHAIN} joints: let it follow the last of them"
-    return ""

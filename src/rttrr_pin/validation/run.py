@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from rttrr_pin import __version__
 from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.exact import Adjudication
 from rttrr_pin.implementations import Implementation, label
@@ -20,6 +19,7 @@ from rttrr_pin.validation.compare import Row, Worst
 from rttrr_pin.validation.comparison import References, Run
 from rttrr_pin.validation.sampling import Payload
 from rttrr_pin.validation.states import Progress, check_count, described
+from rttrr_pin.version import __version__
 
 TOLERANCE = "|subject - reference| <= allowance of the subject + allowance of the reference (docs/tolerance.md)"
 
