@@ -60,7 +60,7 @@ def peak(chains: int = 10, length: int = 400, states: int = 2048, repeats: int =
     values = [graph.input(k) for k in range(chains)]
     factor, term = graph.input(chains), graph.input(chains + 1)
     for _ in range(length):
-        values = [graph.fused(Op.FMA, x, factor, term) for x in values]
+        values = [graph.apply(Op.FMA, (x, factor, term)) for x in values]
     program = Program(graph, (Field("x", (chains + 2,)),), (Field("y", (chains,)),), tuple(values))
     machine = emitter("llvm")
     executable = machine.load(machine.emit(program), program.inputs, program.outputs)
