@@ -123,20 +123,30 @@ def parse(data: bytes) -> Any:
 
 
 def _parse(text: str) -> Any:
-    """The root; a document type is refused."""
+    """The root; a document type is refused. What stands behind the root's end is no part of it, well-formed or not."""
+    tree, parser, closed = ET.TreeBuilder(), expat.ParserCreate("utf-8"), False
+    path: list[str] = []
 
     def refuse(*_: Any) -> None:
         raise UnreadableError("document type")
 
-    tree, parser = ET.TreeBuilder(), expat.ParserCreate("utf-8")
+    def start(tag: str, attributes: dict[str, str]) -> None:
+        path.append(tag)
+        tree.start(tag, attributes)
+
+    def end(_: str) -> None:
+        nonlocal closed
+        tree.end(path.pop())
+        closed = not path
+
     parser.StartDoctypeDeclHandler = refuse
-    parser.StartElementHandler = tree.start
-    parser.EndElementHandler = tree.end
+    parser.StartElementHandler = start
+    parser.EndElementHandler = end
     try:
         parser.Parse(DECLARATION.sub("", COMMENT.sub("", text)).encode(), True)
         return tree.close()
     except expat.ExpatError as error:
-        if error.code == expat.errors.codes[expat.errors.XML_ERROR_JUNK_AFTER_DOC_ELEMENT]:
+        if closed:
             return tree.close()
         raise UnreadableError(f"not XML: {error}") from None
     except ValueError as error:
