@@ -27,7 +27,7 @@ TAGS = (
     "robot", "link", "joint", "inertial", "mass", "inertia", "origin", "axis", "limit", "mimic", "parent", "child",
     "dynamics", "visual", "gazebo", "group", "Link", "x:link",
 )  # fmt: skip
-ATTRIBUTE = re.compile(r"([\w:]+)\s*=\s*(\"[^\"]*\"|'[^']*')")
+ATTRIBUTE = re.compile(r"(?<![\w:])([\w:]+)\s*=\s*(\"[^\"]*\"|'[^']*')")
 DOCTYPES = (
     '<!DOCTYPE robot [<!ENTITY a "b">]>',
     "<!DOCTYPE robot>",
