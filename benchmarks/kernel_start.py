@@ -2,7 +2,7 @@
 
 Run: python benchmarks/kernel_start.py [--repeats N] [--save]. Each figure is of fresh processes, medians of repeats:
 
-- import: `import rttrr_pin` less `import numpy`;
+- import: `import rttrr_pin`, which loads NumPy only when something is asked of it, and `import numpy`;
 - compile: the first `kernel(q, v, a)` with an empty cache folder, everything that it imports included;
 - cached: the same with the cache filled by the process before.
 """
@@ -69,7 +69,6 @@ def main() -> None:
         "repeats": options.repeats,
         "import_numpy_s": medians["numpy"],
         "import_rttrr_pin_s": medians["rttrr_pin"],
-        "import_above_numpy_s": medians["rttrr_pin"] - medians["numpy"],
         "first_calls": [first_calls(robot, options.repeats) for robot in ROBOTS],
     }
     finish("kernel_start", figures, options.save)

@@ -17,6 +17,7 @@ from rttrr_pin.compile.build import STRAIGHT_LINE, build
 from rttrr_pin.compile.emit import Emitter, Executable, One, emitter
 from rttrr_pin.compile.program import Field, Program, Widths
 from rttrr_pin.compile.quantities import QUANTITIES
+from rttrr_pin.compile.threads import MOST as MOST_THREADS
 from rttrr_pin.compile.trace import PayloadSlot, inputs_read, outputs_of
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import common_shape, overflow
@@ -150,7 +151,8 @@ class Kernel(Generic[Result]):
             InputError: an argument is missing, or too many, or `out` is no float64 array that can be written.
         """
         # A control loop calls this with one state. Each line here costs a twentieth of the dynamics.
-        if threads is None:
+        # Few states go on this thread, however many are allowed.
+        if threads is None or (type(threads) is int and 0 < threads <= MOST_THREADS):
             if payload is None and self._one is not None:
                 answer: Result | None = self._one(q, v, a, out)
             else:

@@ -29,6 +29,10 @@ WORTH_A_THREAD = 100_000
 """Numbers in and out below which a second thread costs more than it brings."""
 
 
+MOST = 4096
+"""Threads that may be asked for."""
+
+
 def count(threads: int | None, numbers: int) -> int:
     """How many threads to use.
 
@@ -40,7 +44,7 @@ def count(threads: int | None, numbers: int) -> int:
         InputError: threads is no positive whole number.
     """
     if threads is not None:
-        return whole_number("threads", threads, 1, 4096)
+        return whole_number("threads", threads, 1, MOST)
     processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
     return max(1, min(processors, numbers // WORTH_A_THREAD))
 
