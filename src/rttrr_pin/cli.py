@@ -31,19 +31,6 @@ COMMANDS = {
 """By name, the function that parses, calls and returns an exit code; a new command is an entry here."""
 
 
-AS_OPTIONS = {
-    "pass Wrench(..., link=NAME)": "pass --payload-link NAME",
-    "pass payload=None": "leave --payload out",
-    "n_states is": "--states is",
-    "evaluations is": "--evaluations is",
-    "state is": "--index is",
-    "seed is": "--seed is",
-    "base is": "--base is",
-    "payload is": "--payload is",
-}
-"""Words of messages that name arguments of Python, and what they are here; those that end in "is" begin a message."""
-
-
 def _version(ctx: click.Context, option: click.Parameter, asked: bool) -> None:
     if asked:
         from rttrr_pin import __version__
@@ -114,7 +101,7 @@ def _guarded(words: list[str]) -> int:
         _say(f"DISAGREE: {error}")
         return DISAGREE
     except RttrrError as error:
-        _say(f"error: {_in_options(str(error))}")
+        _say(f"error: {error.in_options()}")
     except Warning as warning:
         _say(f"error: {warning} ({type(warning).__name__}; -W or PYTHONWARNINGS makes it an error)")
     except BrokenPipeError:  # before a verdict, as in --help
@@ -143,14 +130,6 @@ def _run(words: list[str]) -> int:
         _say(f"error: {error.format_message()}\nsee: {command} --help")
         code = UNUSABLE
     return code if isinstance(code, int) else AGREE
-
-
-def _in_options(message: str) -> str:
-    """A message whose hints name the options of the command line."""
-    for words, option in AS_OPTIONS.items():
-        if message.startswith(words) or not words.endswith(" is"):
-            message = message.replace(words, option, 1)
-    return message
 
 
 def _warn(message: Warning | str, *_: object, **__: object) -> None:

@@ -6,12 +6,30 @@ A disagreement between two programs is not an error: it is a result, and `valida
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
+from types import MappingProxyType
+
+NO_OPTIONS: Mapping[str, str] = MappingProxyType({})
 
 
 class RttrrError(Exception):
-    """The base of every error that this package raises on purpose."""
+    """The base of every error that this package raises on purpose.
+
+    Attributes:
+        options: what the command line has in place of words of the message that name an argument of Python.
+    """
+
+    def __init__(self, message: str, options: Mapping[str, str] = NO_OPTIONS) -> None:
+        super().__init__(message)
+        self.options = dict(options)
+
+    def in_options(self) -> str:
+        """The message in the words of the command line."""
+        message = str(self)
+        for argument, option in self.options.items():
+            message = message.replace(argument, option, 1)
+        return message
 
 
 class InputError(RttrrError, ValueError):

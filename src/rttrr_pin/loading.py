@@ -72,7 +72,7 @@ def load(
     from rttrr_pin.urdf.reader import read_urdf  # loads lxml, which a robot made from numbers does not need
 
     if base not in ("fixed", "floating"):
-        raise InputError(f"base is {base!r}: expected 'fixed' (bolted down) or 'floating'")
+        raise InputError(f"base is {base!r}: expected 'fixed' (bolted down) or 'floating'", {"base": "--base"})
     field = None if gravity is None else _field(gravity)
     file = mjcf_path(source)
     if file is not None:
@@ -114,7 +114,8 @@ def _floating(model: Model) -> Model:
     if library == "mujoco.MjModel":
         raise InputError(
             f"base is 'floating', and {model.name!r} stands in MuJoCo's world, which has no mass that could float: "
-            "add a <freejoint/> to the body that floats, or pass the URDF"
+            "add a <freejoint/> to the body that floats, or pass the URDF",
+            options={"base": "--base"},
         )
     return model.with_floating_base()
 

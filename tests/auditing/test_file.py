@@ -9,25 +9,16 @@ import pytest
 from rttrr_pin.auditing import Kind, Verdict, audit, read_publication
 from rttrr_pin.derivation.symbol_file import PUBLISHED
 from rttrr_pin.errors import EquationError
+from support.two_links import LINKS
 
-CRAIG = """
+CRAIG = (
+    """
 title = "Two links"
 language = "{language}"
 {coordinates}
-[robot]
-gravity = ["0", "-g", "0"]
-
-[[link]]
-joint = "revolute about z"
-mass = "m_1"
-com = ["l_1", "0", "0"]
-
-[[link]]
-joint = "revolute about z"
-origin = ["l_1", "0", "0"]
-mass = "m_2"
-com = ["l_2", "0", "0"]
-
+"""
+    + LINKS
+    + """
 [[symbol]]
 name = "m_<k>"
 latex = ["m_<k>"]
@@ -56,6 +47,7 @@ quantity = "tau"
 joint = 2
 {language} = '''{tau_2}'''
 """
+)
 
 THETA = r"""[coordinates]
 position = '\theta_<k>'

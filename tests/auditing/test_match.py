@@ -85,14 +85,14 @@ def test_a_pairing_never_weighs_more_than_all_in_excess_and_all_missing() -> Non
         ]
         text, right = printed(*some()), terms(*some())
         pairs = paired(text, right)
-        assert sorted(pair.place for pair in pairs if pair.place is not None) == list(range(len(text)))
+        assert sorted(pair.position for pair in pairs if pair.position is not None) == list(range(len(text)))
         assert sum(pair.weight for pair in pairs) <= LIMIT / 2 * (len(text) + len(right)) + 1e-9
         assert expression_of(pair.derived for pair in pairs if pair.derived) == right
 
 
 def test_a_copy_is_a_duplicate_and_the_second_one_is_too_many() -> None:
     pairs = paired(printed((1, "m l"), (2, "r x"), (1, "m l")), terms((1, "m l"), (2, "r x")))
-    assert [(pair.place, pair.kinds) for pair in pairs] == [(0, ()), (1, ()), (2, (Kind.DUPLICATE,))]
+    assert [(pair.position, pair.kinds) for pair in pairs] == [(0, ()), (1, ()), (2, (Kind.DUPLICATE,))]
 
 
 def test_parts_of_a_coefficient_add_up() -> None:

@@ -14,24 +14,18 @@ from rttrr_pin.auditing.read import read_latex
 from rttrr_pin.auditing.reading.vocabulary import Vocabulary
 from rttrr_pin.derivation.latex import latex_power
 from rttrr_pin.derivation.symbols import Role, Symbol
+from support.two_links import LINKS
 
-FILE = """
+FILE = (
+    """
 language = "{language}"
 [coordinates]
 position = {position}
 velocity = '{velocity}'
 acceleration = '{acceleration}'
-[robot]
-gravity = ["0", "-g", "0"]
-[[link]]
-joint = "revolute about z"
-mass = "m_1"
-com = ["l_1", "0", "0"]
-[[link]]
-joint = "revolute about z"
-origin = ["l_1", "0", "0"]
-mass = "m_2"
-com = ["l_2", "0", "0"]
+"""
+    + LINKS
+    + """
 [[symbol]]
 name = "m_<k>"
 latex = {masses}
@@ -46,6 +40,7 @@ k = [1, 2]
 name = "g"
 dimension = "acceleration"
 """
+)
 
 EQUATION = """
 [[equation]]

@@ -17,55 +17,13 @@ from rttrr_pin.auditing.reading.component import LONGEST
 from rttrr_pin.auditing.results import AuditResult, ComponentAudit
 from rttrr_pin.auditing.spelling import writing
 from rttrr_pin.errors import InputError
+from support.two_links import ARM
 
 REPORTS = Path(__file__).parents[1] / "data/reports"
 
-ARM = r"""
-[robot]
-gravity = ["0", "-g", "0"]
-[[link]]
-joint = "revolute about z"
-mass = "m_1"
-com = ["l_1", "0", "0"]
-[[link]]
-joint = "revolute about z"
-origin = ["l_1", "0", "0"]
-mass = "m_2"
-com = ["l_2", "0", "0"]
-[[symbol]]
-name = "m_<i>"
-dimension = "mass"
-[[symbol]]
-name = "l_<i>"
-dimension = "length"
-[[symbol]]
-name = "g"
-dimension = "acceleration"
-"""
-"""Two links with point masses."""
-
-SLIDING = r"""
-[robot]
-gravity = ["0", "0", "-g"]
-[[link]]
-joint = "revolute about y"
-mass = "m_1"
-com = ["l_1", "0", "0"]
-[[link]]
-joint = "revolute about -y"
-origin = ["l_1", "0", "0"]
-mass = "m_2"
-com = ["l_2", "0", "0"]
-[[symbol]]
-name = "m_<i>"
-dimension = "mass"
-[[symbol]]
-name = "l_<i>"
-dimension = "length"
-[[symbol]]
-name = "g"
-dimension = "acceleration"
-"""
+SLIDING = (
+    ARM.replace('["0", "-g", "0"]', '["0", "0", "-g"]').replace("about z", "about y", 1).replace("about z", "about -y")
+)
 """The second joint turns the other way, so that angles are differences."""
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import itertools
-import re
 import subprocess
 from dataclasses import replace
 from fractions import Fraction
@@ -14,164 +13,46 @@ from typing import Any
 from xml.sax.saxutils import quoteattr
 
 import numpy as np
-import pinocchio as pin
 import pytest
 
 import rttrr_pin
-from rttrr_pin import JointEffects, Robot, Wrench
+from rttrr_pin import JointEffects, Robot
 from rttrr_pin import derivation as symbolic
-from rttrr_pin.cli import main
 from rttrr_pin.compile.emit.c import compiler
 from rttrr_pin.core.joint import Joint, Mimic
-from rttrr_pin.core.joints import CONTINUOUS, PLANAR, PRISMATIC, REVOLUTE
+from rttrr_pin.core.joints import PRISMATIC, REVOLUTE
 from rttrr_pin.core.model import Link, Model
-from rttrr_pin.core.payload import Load
 from rttrr_pin.derivation import forms
 from rttrr_pin.derivation.closed_forms import closed_forms
-from rttrr_pin.derivation.collect import Power, Presenter, Product, Sum
-from rttrr_pin.derivation.latex import latex_number
+from rttrr_pin.derivation.collect import Power, Product, Sum
 from rttrr_pin.derivation.motion import angles
 from rttrr_pin.derivation.ring import Ring, exact
-from rttrr_pin.derivation.symbols import Expression, Factors, Role, dimension_of
+from rttrr_pin.derivation.symbols import Role, dimension_of
 from rttrr_pin.derivation.writers import WRITERS
 from rttrr_pin.derivation.writers.content import ROOM, width
 from rttrr_pin.derivation.writers.printing import Notation
 from rttrr_pin.derivation.writers.printing import lines as lines_of
-from rttrr_pin.validation import Sampler
 from support import closed_latex
-from support.implementations import evaluated
+from support.derivations import (
+    ALL,
+    CASES,
+    FAST,
+    IDS,
+    ONE_AXIS,
+    STATES,
+    assert_pinocchios,
+    derived,
+    drawn,
+    inputs,
+    pinocchios,
+    robot,
+    written,
+)
 from support.pdflatex import compiled
-from support.serial_chains import EXAMPLES, random_chain
+from support.serial_chains import EXAMPLES
 from support.slow import slow_but
 from support.tolerances import ROUNDING, norm_error
 from support.trees import random_tree
-
-ROOT = Path(__file__).parents[2]
-STATES = 12
-ALL = tuple(symbolic.QUANTITIES)
-OF_LINKS = ("F", "N", "f", "n")
-ONE_AXIS = ("revolute", "continuous", "prismatic", "fixed")
-
-ROBOTS: dict[str, tuple[str, str]] = {
-    "rttrr": ("rttrr", "fixed"),
-    "trtrr": ("trtrr", "fixed"),
-    "any-axes": (random_chain(1, ("revolute", "prismatic", "revolute", "continuous")), "fixed"),
-    "two-joints": (random_chain(8, ("continuous", "fixed", "prismatic")), "fixed"),
-    "fixed-between": (EXAMPLES["fixed-between"], "fixed"),
-    "tree": (random_tree(17, 5, ONE_AXIS), "fixed"),
-    "tree-with-followers": (random_tree(12, 5, ONE_AXIS), "fixed"),
-    "planar-joints": (random_tree(5, 2, ("planar", "continuous"), mimics=False), "fixed"),
-    "floating-base": (random_tree(4, 2, ("revolute", "prismatic"), mimics=False), "floating"),
-}
-
-CASES = [
-    ("rttrr", "auto", "letters"),
-    ("rttrr", "stepwise", "letters"),
-    ("rttrr", "auto", "numbers"),
-    ("trtrr", "auto", "letters"),
-    ("any-axes", "auto", "letters"),
-    ("two-joints", "expanded", "letters"),
-    ("two-joints", "expanded", "numbers"),
-    ("fixed-between", "stepwise", "numbers"),
-    ("tree", "stepwise", "letters"),
-    ("tree-with-followers", "stepwise", "letters"),
-    ("planar-joints", "stepwise", "letters"),
-    ("floating-base", "stepwise", "letters"),
-]
-"""Robot, form, and whether its numbers have letters."""
-
-IDS = ["-".join(case) for case in CASES]
-
-FAST = [CASES[k] for k in (1, 2, 5, 7, 11)]
-"""Those that the README's test line runs: each form, letters and numbers, an arm, a chain, a floating base."""
-
-
-@cache
-def robot(name: str) -> Robot:
-    source, base = ROBOTS[name]
-    return rttrr_pin.load(source, base=base)
-
-
-@cache
-def derived(name: str, form: str, kind: str) -> symbolic.Derivation:
-    model = robot(name).model
-    link = len(model.links) - 1
-    parameters = symbolic.payload_symbols(model, link) if kind == "numbers" else symbolic.default_symbols(model, link)
-    return symbolic.derive(model, ALL, form, parameters, link)
-
-
-@cache
-def written(case: tuple[str, str, str], language: str) -> str:
-    return WRITERS[language](derived(*case))
-
-
-@cache
-def drawn(name: str) -> tuple[Any, np.ndarray]:
-    """States, and a payload at the last link, force before moment."""
-    rng = np.random.default_rng(7)
-    return Sampler(robot(name).model, "mixed", 3).draw(0, STATES), rng.normal(size=(STATES, 6)) * 10.0
-
-
-@cache
-def pinocchios(name: str) -> dict[str, np.ndarray]:
-    """What Pinocchio says: the wrenches by the oracle; M, g and C v by its own functions where no joint follows."""
-    model = robot(name).model
-    at, payload = drawn(name)
-    load = Load(len(model.links) - 1, payload[:, :3], payload[:, 3:])
-    wrenches = evaluated("pinocchio", model, at.q, at.v, at.a, [load]).values
-    found = {key: wrenches[key] for key in ("tau", *OF_LINKS)}
-    still = Robot(model.without_joint_effects())
-    found["M"], found["g"] = robot(name).mass_matrix(at.q), still.gravity_torque(at.q)
-    found["Cv"] = still.nonlinear_effects(at.q, at.v) - found["g"]
-    if all(joint.mimic is None for joint in model.joints):
-        found |= _by_its_own_functions(name)
-    masses = np.array([link.mass for link in model.links])
-    found["v_dot_C"] = found["F"] / np.where(masses, masses, np.nan)[:, None]
-    return found
-
-
-def _by_its_own_functions(name: str) -> dict[str, np.ndarray]:
-    model = robot(name).model
-    root = (pin.JointModelFreeFlyer(),) if ROBOTS[name][1] == "floating" else ()
-    theirs = pin.buildModelFromXML(model.urdf, *root)
-    data, (at, _) = theirs.createData(), drawn(name)
-    M, g, Cv = [], [], []
-    for q, v in zip(_their_coordinates(name, at.q), at.v, strict=True):
-        upper = np.triu(pin.crba(theirs, data, q))
-        M.append(upper + np.triu(upper, 1).T)
-        g.append(pin.computeGeneralizedGravity(theirs, data, q).copy())
-        Cv.append(pin.computeCoriolisMatrix(theirs, data, q, v) @ v)
-    return {"M": np.array(M), "g": np.array(g), "Cv": np.array(Cv)}
-
-
-def _their_coordinates(name: str, q: np.ndarray) -> np.ndarray:
-    """Angles of planar and continuous joints as cosine and sine."""
-    columns, rest = [], list(q.T)
-    for joint in robot(name).model.moving:
-        own, rest = rest[: joint.nq], rest[joint.nq :]
-        if joint.type in (CONTINUOUS, PLANAR):
-            own = [*own[:-1], np.cos(own[-1]), np.sin(own[-1])]
-        columns += own
-    return np.stack(columns, axis=1)
-
-
-def assert_pinocchios(name: str, ours: dict[str, np.ndarray]) -> None:
-    """Every quantity, each link or all joints by their norm."""
-    theirs, (at, _) = pinocchios(name), drawn(name)
-    for key in ("tau", "M", "g"):
-        assert norm_error(ours[key], theirs[key]) <= ROUNDING, key
-    assert norm_error(np.einsum("kij,kj->ki", ours["C"], at.v), theirs["Cv"]) <= ROUNDING
-    for key in ("v_dot_C", *OF_LINKS):
-        for i in range(theirs[key].shape[1]):
-            if not np.isnan(theirs[key][:, i]).any():
-                assert norm_error(ours[key][:, i], theirs[key][:, i]) <= ROUNDING, (key, i)
-
-
-def inputs(name: str, quantity: str) -> list[np.ndarray]:
-    """What a function for the quantity takes."""
-    at, payload = drawn(name)
-    subject = symbolic.QUANTITIES[quantity]
-    return [getattr(at, x) for x in subject.inputs] + ([payload] if subject.payload else [])
 
 
 @pytest.mark.parametrize("case", slow_but(FAST, CASES), ids=IDS)
@@ -212,7 +93,7 @@ def values(name: str, derivation: symbolic.Derivation) -> dict[str, np.ndarray |
     for letter, x in (("q", at.q), ("v", at.v), ("a", at.a)):
         found |= {f"{letter}_{k}": column for k, column in enumerate(x.T, start=1)}
     for angle in angles(robot(name).model):
-        q = angle.multiplier * at.q[:, angle.place - 1] + angle.offset
+        q = angle.multiplier * at.q[:, angle.index - 1] + angle.offset
         found |= {f"s_{angle.suffix}": np.sin(q), f"c_{angle.suffix}": np.cos(q)}
     found |= {f"sign_{k}": np.sign(column) for k, column in enumerate(at.v.T, start=1)}
     tool = ("f_tool_x", "f_tool_y", "f_tool_z", "n_tool_x", "n_tool_y", "n_tool_z")
@@ -380,7 +261,7 @@ def rate(at: symbolic.SymbolicRobot, x: Any) -> Any:
     for angle in angles(at.model):
         s, c = ring[f"s_{angle.suffix}"], ring[f"c_{angle.suffix}"]
         by_angle = ring.derivative(x, str(s)) * c - ring.derivative(x, str(c)) * s
-        total += by_angle * ring[f"v_{angle.place}"] * exact(angle.multiplier)
+        total += by_angle * ring[f"v_{angle.index}"] * exact(angle.multiplier)
     return ring.reduced(total)
 
 
@@ -479,203 +360,3 @@ def test_right_angles_written_with_few_digits_are_read_as_such_on_request() -> N
     long, short = (symbolic.derive(model, ["tau"], "expanded", right_angles=right) for right in (False, True))
     assert short.quantities == symbolic.derive(rttrr_pin.load(exactly), ["tau"], "expanded").quantities
     assert long.count() > short.count()
-
-
-# How it is presented
-
-
-def expanded(ring: Ring, expression: Sum | Power) -> Any:
-    """An expression multiplied out again."""
-    if isinstance(expression, Power):
-        return ring[expression.name] ** expression.exponent
-    total = ring.lift(0)
-    for term in expression.terms:
-        product = ring.lift(term.coefficient)
-        for factor in term.factors:
-            product = product * expanded(ring, factor)
-        total += product
-    return total
-
-
-@pytest.mark.parametrize("case", [CASES[0], CASES[1], CASES[2], CASES[9]], ids=[IDS[0], IDS[1], IDS[2], IDS[9]])
-def test_expressions_multiplied_out_are_the_same_polynomials(case: tuple[str, str, str]) -> None:
-    """Exactly."""
-    derivation = derived(*case)
-    presenter, ring = Presenter(derivation.symbols), derivation.ring
-    for terms in derivation.all_terms():
-        assert ring.reduced(expanded(ring, presenter.expression(terms))) == ring.polynomial(terms)
-
-
-def factors_of(term: Product) -> Factors:
-    return tuple((factor.name, factor.exponent) for factor in term.factors if isinstance(factor, Power))
-
-
-def test_terms_are_collected_by_rates_in_a_fixed_order() -> None:
-    """Accelerations, squares of rates, products of rates, gravity, payload, what is left; each once."""
-    derivation = derived("rttrr", "auto", "letters")
-    outer = (Role.ACCELERATION, Role.RATE, Role.GRAVITY, Role.PAYLOAD)
-    expression = Presenter(derivation.symbols).expression(derivation.quantities["n"].terms[2, 2])
-    heads = [
-        " ".join(f"{name}^{power}" for name, power in factors_of(term) if derivation.symbols[name].role in outer)
-        for term in expression.terms
-    ]
-    assert heads == [
-        *(f"a_{k}^1" for k in (1, 3, 4, 5)),
-        *(f"v_{k}^2" for k in (1, 4, 5)),
-        *("v_1^1 v_3^1", "v_1^1 v_4^1", "v_1^1 v_5^1", "v_4^1 v_5^1"),
-        *("f_tool_x^1", "f_tool_y^1", "f_tool_z^1", "n_tool_x^1", "n_tool_z^1"),
-    ]
-
-
-@pytest.mark.parametrize(
-    ("polynomial", "wanted"),
-    [
-        ({"": 1, "c_4^2": -1}, {"s_4^2": 1}),
-        ({"g": 3, "g c_4^2": -3, "c_5^2": 1}, {"g s_4^2": 3, "c_5^2": 1}),
-        ({"": 1, "c_4^2": 1}, {"": 1, "c_4^2": 1}),
-        ({"": 1, "c_4^2": -1, "c_5^2": -1, "c_4^2 c_5^2": 1}, {"s_4^2 s_5^2": 1}),
-        ({"": 2, "c_4^2": -1}, {"": 2, "c_4^2": -1}),
-    ],
-)
-def test_sines_are_squared_where_that_saves_a_term(polynomial: dict[str, int], wanted: dict[str, int]) -> None:
-    presenter = Presenter(derived("rttrr", "auto", "letters").symbols)
-    assert presenter.shortest(terms(polynomial)) == terms(wanted)
-
-
-def terms(polynomial: dict[str, int]) -> Expression:
-    """Products such as "g c_4^2" with their coefficients."""
-    found: Expression = {}
-    for product, coefficient in polynomial.items():
-        pairs = [word.partition("^") for word in product.split()]
-        found[tuple(sorted((name, int(power or 1)) for name, _, power in pairs))] = Fraction(coefficient)
-    return found
-
-
-def test_common_factors_stand_in_front() -> None:
-    """(g + q_3) (M_4 s_4 + M_5 c_4), and not its four terms."""
-    presenter = Presenter(derived("rttrr", "auto", "letters").symbols)
-    found = presenter.expression(terms({"M_4 p_3x s_4": 2, "M_5 p_3x c_4": 2, "M_4 q_3 s_4": 2, "M_5 q_3 c_4": 2}))
-    (term,) = found.terms
-    assert term.coefficient == 2
-    assert [len(factor.terms) for factor in term.factors if isinstance(factor, Sum)] == [2, 2]
-
-
-def test_numbers_are_read_back_as_the_same_float() -> None:
-    for x in (0.1, 1e-7, 123456.789, 2.5e20, 1 / 3, 7.02475):
-        latex = latex_number(Fraction(x)).replace(r" \cdot 10^{", "e").rstrip("}")
-        assert float(latex) == x
-    assert latex_number(Fraction(1, 2)) == r"\frac{1}{2}"
-
-
-def test_the_estimated_width_is_not_below_the_true_one() -> None:
-    """Widths in em of Computer Modern as MathJax sets it."""
-    true = {
-        r"M_5 \cdot cq_4": 3.44,
-        r"{}^5r_{C_{5x}}": 2.07,
-        r"\ddot{q}_1 + q_3": 2.99,
-        r"{}^5J_{xz}^*": 1.81,
-        r"\frac{1}{2} \cdot (M_3 - 2.5)": 6.35,
-        r"{}^3\dot{\omega}_{x,\ddot{q}_2}": 2.37,
-        r"\mathrm{sgn}(\dot{q}_{12})": 3.46,
-        r"1.5 \cdot 10^{-7} \cdot s^2q_4": 6.50,
-    }
-    for latex, measured in true.items():
-        assert width(latex) >= measured
-
-
-# The page and the command
-
-
-def test_the_command_says_how_long_the_forms_are(capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["derive", "--quantity", "tau", "--quantity", "g"]) == 0
-    out = capsys.readouterr().out
-    assert "expanded form" in out and "--latex FILE" in out
-    total = derived("rttrr", "auto", "letters")
-    counted = sum(len(x) for name in ("tau", "g") for x in total.quantities[name].terms.values())
-    assert f"{counted} terms in all" in out
-
-
-def test_files_and_standard_output(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    files = {name: tmp_path / f"model{suffix}" for name, suffix in (("latex", ".tex"), ("python", ".py"))}
-    words = [word for name, path in files.items() for word in (f"--{name}", str(path))]
-    assert main(["derive", "trr", "--quantity", "g", "--c", "-", *words]) == 0
-    out, err = capsys.readouterr()
-    assert out.startswith("/* Dynamic model of trr") and err == ""
-    assert files["latex"].read_text().startswith("\\documentclass")
-    assert files["python"].read_text().startswith('"""Dynamic model of trr')
-    assert sorted(tmp_path.iterdir()) == sorted(files.values())
-
-
-LONG_NAMES = {
-    "words": "a very long robot name " * 20,
-    "one word": "x" * 3000,
-    "signs": "\u03b8*/ ??/" * 100,
-    "a digit": "2R",
-}
-
-
-@pytest.mark.parametrize("kind", LONG_NAMES)
-@pytest.mark.parametrize("numbers", [[], ["--numbers"]], ids=["letters", "numbers"])
-def test_programs_take_any_name_of_a_robot(kind: str, numbers: list[str], tmp_path: Path) -> None:
-    text = robot("two-joints").model.urdf
-    assert text is not None
-    (tmp_path / "a.urdf").write_text(re.sub('robot name="[^"]*"', f"robot name={quoteattr(LONG_NAMES[kind])}", text))
-    source, code = tmp_path / "a.c", tmp_path / "a.py"
-    words = ["derive", str(tmp_path / "a.urdf"), "--c", str(source), "--python", str(code), "-q", *numbers]
-    assert main([*words, "--quantity", "tau", "--quantity", "C"]) == 0
-    compile(code.read_text(), "a.py", "exec")
-    flags = ("-std=c99", "-O0", "-Wall", "-Wextra", "-Werror", "-pedantic", "-fsyntax-only")
-    done = subprocess.run([*compiler(), *flags, source], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
-
-
-def test_formulas_are_printed_where_they_fit_the_screen(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Whole quantities in order; what is printed is the polynomial."""
-    derivation = symbolic.derive(robot("rttrr"), ["n", "g"])
-    ring, names = derivation.ring, derivation.symbols
-    for columns, height in ((80, 25), (200, 60), (40, 10)):
-        monkeypatch.setenv("COLUMNS", str(columns))
-        monkeypatch.setenv("LINES", str(height))
-        assert main(["derive", "--quantity", "n", "--quantity", "g"]) == 0
-        out = capsys.readouterr().out
-        shown = re.findall(r"^g_(\d) = (.*(?:\n +.*)*)", out, re.M)
-        assert len(shown) == 5 and "too long for this screen: n" in out
-        assert max(map(len, re.search(r"^g_1 = .*?(?=\nto)", out, re.M | re.S)[0].split("\n"))) <= columns
-        for k, text in shown:
-            code = re.sub(r"(?<=[\w)]) (?=[\w(])", "*", " ".join(text.split("\ntoo")[0].split())).replace("^", "**")
-            value = eval(code, {name: ring[name] for name in names})
-            assert ring.reduced(value) == ring.polynomial(derivation.quantities["g"].terms[int(k) - 1,])
-
-
-UNUSABLE = {
-    "quantity": (["derive", "--quantity", "taus"], "no quantity is called 'taus': did you mean tau"),
-    "form": (["derive", "--form", "short"], "no form is called 'short': there are auto, expanded, stepwise"),
-    "payload": (["derive", "--payload-link", "hand"], "no link is called 'hand'"),
-    "twice": (["derive", "--latex", "-", "--c", "-"], "--latex and --c both go to stdout"),
-    "folder": (["derive", "--python", "no/such/folder/x.py"], "cannot be written"),
-    "robot": (["derive", "rttr"], "did you mean"),
-}
-
-
-@pytest.mark.parametrize("case", UNUSABLE)
-def test_unusable_input_exits_2_and_says_why(case: str, capsys: pytest.CaptureFixture[str]) -> None:
-    words, message = UNUSABLE[case]
-    assert main(words) == 2
-    out, err = capsys.readouterr()
-    assert message in err
-    assert "Traceback" not in err and out == ""
-
-
-def test_the_payload_is_that_of_robots_with_one_last_link() -> None:
-    """Through the Robot, in base axes or link axes, with the wrench that its own function takes."""
-    derivation = symbolic.derive(robot("rttrr"), ["tau"])
-    module: dict[str, Any] = {}
-    exec(WRITERS["python"](derivation), module)
-    at, payload = drawn("rttrr")
-    ours = robot("rttrr").inverse_dynamics(at.q, at.v, at.a, Wrench(payload[:, :3], payload[:, 3:])).tau
-    assert norm_error(module["tau"](at.q, at.v, at.a, payload), ours) <= ROUNDING
-    assert module["tau"](at.q[0], at.v[0], at.a[0]).shape == (5,)
-    with pytest.raises(ValueError, match=r"q has shape \(4,\), expected \(\.\.\., 5\)"):
-        module["tau"](at.q[0, :4], at.v[0], at.a[0])

@@ -48,7 +48,7 @@ def findings(
         Finding(
             id=f"{name}.{k}",
             kind=kind,
-            printed=None if pair.place is None else terms[pair.place].text,
+            printed=None if pair.position is None else terms[pair.position].text,
             derived=None if pair.derived is None else write([pair.derived])[0],
             dimension_ok=None if pair.reading is None else dimension_of(pair.reading.factors, symbols) in known,
             note="; ".join(filter(None, (pair.reading.note if pair.reading else "", hints.get(id(pair), "")))),
@@ -66,7 +66,7 @@ def undeclared(matching: Matching) -> Iterator[str]:
             candidates = beside.setdefault(spelling, Counter())
             if pair.reading and pair.derived:
                 candidates.update(name for name, _ in pair.derived[1] if name not in dict(pair.reading.factors))
-    likely = {x: next((symbols[name] for name, _ in found.most_common(1)), None) for x, found in beside.items()}
+    likely = {x: next((symbols[name] for name, _ in counts.most_common(1)), None) for x, counts in beside.items()}
     atoms = {spelling: _atom(spelling) for spelling in likely}
     moving = {
         (atom.letters, atom.subscript): symbol.index
@@ -105,8 +105,8 @@ def to_declare(spelling: str, likely: Symbol | None = None) -> str:
 def _hints(pairs: Sequence[Pair]) -> dict[int, str]:
     """What may have happened to several terms at once: a sign lost between two, or put into one."""
     hints: dict[int, str] = {}
-    missing = [pair for pair in pairs if pair.place is None]
-    printed = [pair for pair in pairs if pair.place is not None]
+    missing = [pair for pair in pairs if pair.position is None]
+    printed = [pair for pair in pairs if pair.position is not None]
     for pair in (pair for pair in printed if pair.derived is None):
         for one, other in combinations(missing, 2):
             if _derived_powers(one) + _derived_powers(other) == _printed_powers(pair):

@@ -27,8 +27,8 @@ def other_matrices(
     """
     right: dict[str, str] = {}
     open_: dict[str, str] = {}
-    for place in {parts_of(name)[1] for name in matchings if parts_of(name)[0] == "C"}:
-        row = [f"C{place + 1},{column}" for column in range(1, rates + 1)]
+    for index in {parts_of(name)[1] for name in matchings if parts_of(name)[0] == "C"}:
+        row = [f"C{index + 1},{column}" for column in range(1, rates + 1)]
         wrong = [name for name in row if name in matchings and any(pair.kinds for pair in matchings[name].pairs)]
         if not wrong:
             continue

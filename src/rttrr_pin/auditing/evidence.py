@@ -169,7 +169,7 @@ class Witness:
         """The values in one kind of scalar, with the sines and cosines of the robot's angles."""
         values = {name: number(x) for name, x in self.values.items()}
         for angle in angles(self.robot.model):
-            x = values[f"q_{angle.place}"] * number(angle.multiplier) + number(angle.offset)
+            x = values[f"q_{angle.index}"] * number(angle.multiplier) + number(angle.offset)
             values[f"s_{angle.suffix}"], values[f"c_{angle.suffix}"] = sincos(x)
         return values
 

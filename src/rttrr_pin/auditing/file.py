@@ -185,13 +185,13 @@ def _equation(table: Table, model: Model, language: str) -> Equation:
     every = tuple(range(model.nv))
     if quantity in SCALARS:
         _one_text_each(table, texts, model.nv, language)
-        return Equation(number, quantity, -1, "", texts, line, places=every)
+        return Equation(number, quantity, -1, "", texts, line, indices=every)
     if quantity in MATRICES:
         rows, columns = (
             (_place(table, key, model.v_names),) if key in table.entries else every for key in ("row", "column")
         )
         _one_text_each(table, texts, len(rows) * len(columns), language)
-        return Equation(number, quantity, -1, "", texts, line, places=rows, columns=columns)
+        return Equation(number, quantity, -1, "", texts, line, indices=rows, columns=columns)
     known = ", ".join((*VECTORS, *SCALARS, *MATRICES))
     raise table.error(f"quantity is {shown(quantity)}: expected {known} or {DEFINITION}")
 

@@ -37,14 +37,14 @@ class Pair:
     """A printed term and the derived one that it should be.
 
     Attributes:
-        place: of the printed term in the component; None where it is missing.
+        position: of the printed term in the component; None where it is missing.
         reading: how the printed term was read; None where it is missing.
         derived: what is right; None where the printed term is in excess.
         kinds: what went wrong; empty where it matches.
         weight: of the errors.
     """
 
-    place: int | None
+    position: int | None
     reading: Reading | None
     derived: Term | None
     kinds: tuple[Kind, ...]
@@ -75,7 +75,7 @@ class Matching:
 
     def as_right(self) -> Matching:
         """The same with nothing wrong, where it is equal to what is derived in another way."""
-        return replace(self, pairs=[replace(x, kinds=(), weight=0.0) for x in self.pairs if x.place is not None])
+        return replace(self, pairs=[replace(x, kinds=(), weight=0.0) for x in self.pairs if x.position is not None])
 
 
 def match_best(
@@ -103,13 +103,13 @@ def match(component: Normalised, aliases: Mapping[str, str]) -> Matching:
     best = _assign(component, aliases, settled)
     for pair in best:  # of the first assignment
         if _partly_printed(pair) and pair.derived:
-            places = {pair.place for pair in settled}
-            others = [x for x in _literal(component.printed.terms) if x.place not in places]
+            positions = {pair.position for pair in settled}
+            others = [x for x in _literal(component.printed.terms) if x.position not in positions]
             also = [*settled, *(x for x in others if x.derived and x.derived[1] == pair.derived[1])]
             other = _assign(component, aliases, also)
             if _weight(other) < _weight(best):
                 best, settled = other, also
-    return Matching(component, sorted(best, key=lambda pair: (pair.place is None, pair.place or 0)))
+    return Matching(component, sorted(best, key=lambda pair: (pair.position is None, pair.position or 0)))
 
 
 def _weight(pairs: Iterable[Pair]) -> float:
@@ -118,7 +118,7 @@ def _weight(pairs: Iterable[Pair]) -> float:
 
 def _literal(printed: Sequence[PrintedTerm]) -> Iterator[Pair]:
     """Each printed term, read literally, as right."""
-    return (Pair(place, term.readings[0], term.literal, (), 0.0) for place, term in enumerate(printed))
+    return (Pair(position, term.readings[0], term.literal, (), 0.0) for position, term in enumerate(printed))
 
 
 def _added_up(component: Normalised) -> list[Pair]:
@@ -140,8 +140,8 @@ def _partly_printed(pair: Pair) -> bool:
 
 def _assign(component: Normalised, aliases: Mapping[str, str], settled: Sequence[Pair]) -> list[Pair]:
     """The pairs that are settled, and the least assignment of the other printed terms to what is still owed."""
-    places = {pair.place for pair in settled}
-    rest = [place for place in range(len(component.printed.terms)) if place not in places]
+    positions = {pair.position for pair in settled}
+    rest = [position for position in range(len(component.printed.terms)) if position not in positions]
     derived = ((coefficient, factors) for factors, coefficient in component.derived.items())
     paid = ((-pair.reading.coefficient, pair.reading.factors) for pair in settled if pair.reading)
     owed = [(coefficient, factors) for factors, coefficient in expression_of([*derived, *paid]).items()]
@@ -172,8 +172,8 @@ def _candidates(
     """Every pair of a printed and a derived term that have enough in common."""
     readings = [
         (i, k, reading)
-        for i, place in enumerate(rest)
-        for k, reading in enumerate(component.printed.terms[place].readings)
+        for i, position in enumerate(rest)
+        for k, reading in enumerate(component.printed.terms[position].readings)
     ]
     printed = [renamed_factors(reading.factors, aliases) for _, _, reading in readings]
     derived = [renamed_factors(factors, aliases) for _, factors in owed]
@@ -208,9 +208,9 @@ def _unpaired(printed: Sequence[PrintedTerm], rest: Sequence[int], right: set[Te
     """Each printed term as one that nothing derived corresponds to: printed twice, or in excess."""
     copies = Counter(term.literal for term in printed)
     pairs = []
-    for place in rest:
-        reading = printed[place].readings[0]
+    for position in rest:
+        reading = printed[position].readings[0]
         kind = Kind.DUPLICATE if copies[reading.term] > 1 and reading.term in right else Kind.EXTRA
-        later = LATER * place if kind is Kind.DUPLICATE else 0.0  # of two copies, the second is one too many
-        pairs.append(Pair(place, reading, None, (kind,), WEIGHT[kind] - later))
+        later = LATER * position if kind is Kind.DUPLICATE else 0.0  # of two copies, the second is one too many
+        pairs.append(Pair(position, reading, None, (kind,), WEIGHT[kind] - later))
     return pairs

@@ -11,22 +11,11 @@ from rttrr_pin.auditing.derived import Derived, derive
 from rttrr_pin.auditing.evidence import Witness
 from rttrr_pin.auditing.match import Matching, match_best
 from rttrr_pin.auditing.printed import PrintedComponent, Split
-from rttrr_pin.auditing.prove import prove, prove_quotient
+from rttrr_pin.auditing.prove import Proof, prove, prove_quotient
 from rttrr_pin.auditing.publication import Convention, Equation, Publication
 from rttrr_pin.auditing.quotients import as_quotient, compare
 from rttrr_pin.auditing.read import read
-from rttrr_pin.auditing.results import AuditResult, ComponentAudit, ConventionCheck, Verdict
-from rttrr_pin.derivation.symbols import ACCELERATION, FORCE, INERTIA, MASS, MOMENT, Dimension
-
-UNITS: Mapping[Dimension, str] = {
-    ACCELERATION: "m/s^2",
-    FORCE: "N",
-    MOMENT: "N m",
-    INERTIA: "kg m^2",
-    MASS: "kg",
-    Dimension(time=-2): "rad/s^2",
-}
-"""Units that are not the product of those of length, mass and time."""
+from rttrr_pin.auditing.results import AuditResult, ComponentAudit, ConventionCheck, Finding, Verdict
 
 
 def audit(publication: Publication, seed: int = 0, progress: Callable[[int], None] = lambda done: None) -> AuditResult:
@@ -113,35 +102,22 @@ def _component(
 
     `reason` says why nothing can be said of it yet; empty for most.
     """
-    component, dimension = matching.component, publication.dimension(name)
+    component = matching.component
     needed = (*undeclared(matching), *([reason] if reason else []))
     notes = (pair.reading.note for pair in matching.pairs if pair.reading and not pair.kinds)
-    result = ComponentAudit(
-        equation=equation.number,
-        quantity=name,
-        line=equation.line,
+    unjudged = replace(
+        _unjudged(publication, equation, name, component.printed.unparsed, needed),
         printed_terms=len(component.printed.terms),
         derived_terms=len(component.derived),
-        verdict=Verdict.UNDECLARED if needed else Verdict.UNPARSED,
-        unit=UNITS.get(dimension) or str(dimension),
         notes=tuple(filter(None, (note, *notes))),
-        unparsed=component.printed.unparsed,
-        undeclared=needed,
     )
     if needed or component.printed.unparsed:
-        return result
+        return unjudged
     corrected = corrected_terms(matching)
     proof = prove(matching, [term for term, _ in corrected], name, derived, publication, witness)
-    errors = findings(matching, name, proof.write, [dimension])
+    errors = findings(matching, name, proof.write, [publication.dimension(name)])
     changed = [changed for _, changed in corrected] or [True]  # a sum of nothing is printed as 0
-    return replace(
-        result,
-        verdict=Verdict.DIFFERS if errors else Verdict.MATCH,
-        findings=errors,
-        corrected=tuple(zip(proof.corrected, changed, strict=True)),
-        proven=proof.proven,
-        evidence=proof.evidence,
-    )
+    return _judged(unjudged, not errors, errors, changed, proof)
 
 
 def _quotient(
@@ -153,29 +129,46 @@ def _quotient(
     witness: Witness,
 ) -> ComponentAudit:
     """The result for one component in which symbols divide."""
-    printed, dimension = as_quotient(component), publication.dimension(name)
-    result = ComponentAudit(
-        equation=equation.number,
-        quantity=name,
-        line=equation.line,
-        printed_terms=0 if component.unparsed else len(printed.numerator) + len(printed.denominator),
-        derived_terms=0,
-        verdict=Verdict.UNDECLARED if printed.unknown else Verdict.UNPARSED,
-        unit=UNITS.get(dimension) or str(dimension),
-        unparsed=component.unparsed,
-        undeclared=tuple(map(to_declare, printed.unknown)),
-    )
-    if printed.unknown or component.unparsed:
-        return result
+    printed = as_quotient(component)
+    terms = 0 if component.unparsed else len(printed.numerator) + len(printed.denominator)
+    needed = tuple(map(to_declare, printed.unknown))
+    unjudged = replace(_unjudged(publication, equation, name, component.unparsed, needed), printed_terms=terms)
+    if needed or component.unparsed:
+        return unjudged
     comparison = compare(printed, name, derived, publication.aliases)
     proof = prove_quotient(comparison, component.text, name, derived, publication, witness)
     errors = () if comparison.right else comparison.findings(name, proof.write)
+    terms = len(comparison.derived.numerator) + len(comparison.derived.denominator)
+    changed = [not comparison.right] * len(proof.corrected)
+    return _judged(replace(unjudged, derived_terms=terms), comparison.right, errors, changed, proof)
+
+
+def _unjudged(
+    publication: Publication, equation: Equation, name: str, unparsed: str, needed: tuple[str, ...]
+) -> ComponentAudit:
+    """The result where a component could not be read, or has symbols that are not declared; all others begin so too."""
+    return ComponentAudit(
+        equation=equation.number,
+        quantity=name,
+        line=equation.line,
+        printed_terms=0,
+        derived_terms=0,
+        verdict=Verdict.UNDECLARED if needed else Verdict.UNPARSED,
+        unit=publication.dimension(name).unit,
+        unparsed=unparsed,
+        undeclared=needed,
+    )
+
+
+def _judged(
+    result: ComponentAudit, right: bool, errors: tuple[Finding, ...], changed: Sequence[bool], proof: Proof
+) -> ComponentAudit:
+    """The result with its verdict; `changed` says of each corrected text whether it is not as printed."""
     return replace(
         result,
-        derived_terms=len(comparison.derived.numerator) + len(comparison.derived.denominator),
-        verdict=Verdict.MATCH if comparison.right else Verdict.DIFFERS,
+        verdict=Verdict.MATCH if right else Verdict.DIFFERS,
         findings=errors,
-        corrected=tuple((text, not comparison.right) for text in proof.corrected),
+        corrected=tuple(zip(proof.corrected, changed, strict=True)),
         proven=proof.proven,
         evidence=proof.evidence,
     )

@@ -29,21 +29,21 @@ class Equation:
     Attributes:
         number: as printed.
         quantity: vC, F, N, f, n, tau, M, C, g, a; or "definition".
-        place: index of the link, or of the joint; -1 for a definition, and where there are several.
+        index: index of the link, or of the joint; -1 for a definition, and where there are several.
         components: which axes, such as "xyz" or "z"; empty for a scalar.
         texts: the text as printed, whole, or one for each component.
         line: where it starts in the published text; 0 where that is not known.
-        places: indices where it states more than one; else empty.
+        indices: those where it states more than one; else empty.
         columns: of an equation about entries of a matrix, indices of their columns; else empty.
     """
 
     number: int | str
     quantity: str
-    place: int
+    index: int
     components: str
     texts: tuple[str, ...]
     line: int = 0
-    places: tuple[int, ...] = ()
+    indices: tuple[int, ...] = ()
     columns: tuple[int, ...] = ()
 
     @property
@@ -52,7 +52,7 @@ class Equation:
         if self.quantity == DEFINITION:
             return []
         endings = [f",{column + 1}" for column in self.columns] or self.components or ("",)
-        return [f"{self.quantity}{place + 1}{end}" for place in self.places or (self.place,) for end in endings]
+        return [f"{self.quantity}{index + 1}{end}" for index in self.indices or (self.index,) for end in endings]
 
 
 def parts_of(name: str) -> tuple[str, int, str]:
@@ -63,8 +63,8 @@ def parts_of(name: str) -> tuple[str, int, str]:
 
 def component_of(name: str, quantities: Mapping[str, Any]) -> Any:
     """One component by its name, such as F5z or tau2, of quantities that have a value for each link or joint."""
-    quantity, place, end = parts_of(name)
-    value = quantities[quantity][place]
+    quantity, index, end = parts_of(name)
+    value = quantities[quantity][index]
     if end.isdecimal():
         return value[int(end) - 1]
     return tuple(value)["xyz".index(end)] if end else value
@@ -141,13 +141,13 @@ class Publication:
 
     def dimension(self, name: str) -> Dimension:
         """The dimension that every term of a component should have."""
-        quantity, place, end = parts_of(name)
+        quantity, index, end = parts_of(name)
         fixed = {"vC": ACCELERATION, "F": FORCE, "f": FORCE, "N": MOMENT, "n": MOMENT}
         if quantity in fixed:
             return fixed[quantity]
         rotations = [rotation for joint in self.robot.model.moving for rotation in joint.type.rotations]
         force, acceleration, rate = MOMENT, Dimension(time=-2), Dimension(time=-1)
-        if not rotations[place]:
+        if not rotations[index]:
             force, acceleration = FORCE, ACCELERATION
         if quantity in ("tau", "g"):
             return force

@@ -45,13 +45,15 @@ class Comparison:
 
     def findings(self, name: str, write: Writing) -> tuple[Finding, ...]:
         """The errors, numerator first."""
-        found: list[Finding] = []
+        errors: list[Finding] = []
         for where in ("numerator", "denominator"):
             printed, derived = getattr(self.printed, where), getattr(self.derived, where)
             matching = _paired(printed, derived, self.symbols, self.aliases, write)
             note = f"in the {where}, brackets multiplied out"
-            found += [replace(x, note="; ".join(filter(None, (note, x.note)))) for x in findings(matching, name, write)]
-        return tuple(replace(x, id=f"{name}.{k}") for k, x in enumerate(found, start=1))
+            errors += [
+                replace(x, note="; ".join(filter(None, (note, x.note)))) for x in findings(matching, name, write)
+            ]
+        return tuple(replace(x, id=f"{name}.{k}") for k, x in enumerate(errors, start=1))
 
 
 def as_quotient(component: PrintedComponent) -> Quotient:

@@ -47,9 +47,9 @@ def check_out(name: str, x: Any, shape: tuple[int, ...]) -> None:
         ShapeError: it has another shape.
     """
     if not isinstance(x, np.ndarray) or x.dtype != np.float64 or not x.flags.aligned or not x.dtype.isnative:
-        kind = f"array of {x.dtype}" if isinstance(x, np.ndarray) else type(x).__name__
-        kind = f"misaligned {kind}" if isinstance(x, np.ndarray) and not x.flags.aligned else kind
-        raise InputError(f"out for {name} is a {kind}: expected a float64 array, such as np.empty({shape})")
+        description = f"array of {x.dtype}" if isinstance(x, np.ndarray) else type(x).__name__
+        description = f"misaligned {description}" if isinstance(x, np.ndarray) and not x.flags.aligned else description
+        raise InputError(f"out for {name} is a {description}: expected a float64 array, such as np.empty({shape})")
     if x.shape != shape:
         raise ShapeError(
             f"out for {name} has shape {x.shape}, expected {shape}: pass np.empty({shape})",

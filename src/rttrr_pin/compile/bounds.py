@@ -44,15 +44,15 @@ def with_bounds(
         A program with the same operations for the values, whose outputs are these.
     """
     bounder = _Bounder(program, quaternions, fused)
-    places = {}
+    ranges = {}
     at = 0
     for output in program.outputs:
-        places[output.name] = range(at, at + output.width)
+        ranges[output.name] = range(at, at + output.width)
         at += output.width
     results: list[int] = []
     for output in outputs:
         plain = output.name.removesuffix(BOUND)
-        nodes = [program.results[place] for place in places[plain]]
+        nodes = [program.results[index] for index in ranges[plain]]
         results += [bounder.bound_of(x) if output.name.endswith(BOUND) else bounder.values[x].number for x in nodes]
     return Program(bounder.graph, program.inputs, outputs, tuple(results))
 
@@ -97,16 +97,16 @@ class _Bounder:
         bound = self._sum(inherited, self._size(z))
         return z, bound + UNDERFLOW / UNIT_ROUNDOFF if op is Op.MUL or op in FUSED else bound
 
-    def _input(self, place: int) -> Node:
-        return Node(self.graph, self.graph.input(place))
+    def _input(self, index: int) -> Node:
+        return Node(self.graph, self.graph.input(index))
 
-    def _length_error(self, place: int) -> Node:
+    def _length_error(self, index: int) -> Node:
         """How far a component of a quaternion may be from that of the unit one; 8 u cover the square's rounding."""
         for first in self.quaternions:
-            if first <= place < first + 4:
+            if first <= index < first + 4:
                 x, y, z, w = (self._input(k) for k in range(first, first + 4))
                 defect = x * x + y * y + z * z + w * w - 1.0
-                return self._size(self._input(place)) * (self._size(defect) * (1.0 / UNIT_ROUNDOFF) + 8.0)
+                return self._size(self._input(index)) * (self._size(defect) * (1.0 / UNIT_ROUNDOFF) + 8.0)
         return self._constant(0.0)
 
     def _inherited(self, op: Op, args: tuple[int, ...]) -> Node:

@@ -89,18 +89,18 @@ def _described(x: Any, scalar: Callable[[Leaf], Hashable], vector: Callable[[Vec
         return vector(x)
     if isinstance(x, (list, tuple)):
         return (type(x), *(_described(part, scalar, vector) for part in x))
-    kind: type = type(x)
-    names = _names(kind)
+    cls: type = type(x)
+    names = _names(cls)
     if names is not None:
-        return (kind, *(_described(getattr(x, name), scalar, vector) for name in names))
+        return (cls, *(_described(getattr(x, name), scalar, vector) for name in names))
     assert isinstance(x, Hashable)
     return x
 
 
 @cache
-def _names(kind: type) -> tuple[str, ...] | None:
+def _names(cls: type) -> tuple[str, ...] | None:
     """The fields of a dataclass."""
-    return tuple(field.name for field in fields(kind)) if is_dataclass(kind) else None
+    return tuple(field.name for field in fields(cls)) if is_dataclass(cls) else None
 
 
 def built(structure: Hashable, scalars: Iterator[Any]) -> Any:
@@ -109,6 +109,6 @@ def built(structure: Hashable, scalars: Iterator[Any]) -> Any:
         return next(scalars)
     if not isinstance(structure, tuple):
         return structure
-    kind, *parts = structure
+    cls, *parts = structure
     values = [built(part, scalars) for part in parts]
-    return kind(values) if kind in (list, tuple) else kind(*values)
+    return cls(values) if cls in (list, tuple) else cls(*values)

@@ -74,6 +74,7 @@ class Graph:
 
     def _node(self, op: Op, args: tuple[int, ...]) -> int:
         """The node of that operation, new or known."""
+        # Hash-consing is all the common-subexpression elimination there is: what was recorded once is never looked for.
         key = (op, args)
         number = self._known.get(key)
         if number is None:
@@ -101,9 +102,9 @@ class Graph:
             )
         return number
 
-    def input(self, place: int) -> int:
+    def input(self, index: int) -> int:
         """The input at a place."""
-        return self._node(Op.INPUT, (place,))
+        return self._node(Op.INPUT, (index,))
 
     def is_constant(self, x: int, value: Number | None = None) -> bool:
         """Whether a node is a constant, or exactly that constant."""
@@ -143,7 +144,7 @@ class Graph:
             return x
         if self.op[y] is Op.NEG:
             return self.add(x, self.args[y][0])
-        if self.op[x] is Op.NEG:
+        if self.op[x] is Op.NEG:  # -u - y = -(u + y): the sign goes outwards, where other signs may cancel it
             return self.neg(self.add(self.args[x][0], y))
         # y - x and x - y share a node: rounding is symmetric, so the sign costs no bit.
         return self._node(Op.SUB, (x, y)) if x < y else self.neg(self._node(Op.SUB, (y, x)))
@@ -170,7 +171,7 @@ class Graph:
             return self.neg(self._scaled(-factor, y))
         if self.op[y] is Op.NEG:
             return self.neg(self._scaled(factor, self.args[y][0]))
-        if exactly(factor, 1):
+        if exactly(factor, 1):  # a 1 with an error is no 1: its error must reach the bound
             return y
         if self.op[y] is Op.MUL and self.op[self.args[y][0]] is Op.CONSTANT:  # numbers of the robot meet here, once
             return self._scaled(factor * self.value[self.args[y][0]], self.args[y][1])
@@ -178,7 +179,7 @@ class Graph:
 
     def function(self, op: Op, x: int) -> int:
         """Sine, cosine, sign or absolute value; odd and even ones lose the sign of their argument."""
-        if self.op[x] is Op.CONSTANT:
+        if self.op[x] is Op.CONSTANT:  # the angle of a locked joint, say
             return self.constant(of_number(op, self.value[x]))
         if self.op[x] is Op.NEG:
             inner = self.function(op, self.args[x][0])

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, is_dataclass
+from collections.abc import Mapping, Sequence
 from functools import cached_property
 from math import prod
 from typing import Any, Generic, TypeVar, cast
@@ -11,14 +10,15 @@ from typing import Any, Generic, TypeVar, cast
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.compile import cache, emit, threads
+from rttrr_pin.compile import emit, threads
 from rttrr_pin.compile.arrays import as_rows, check_out, readable, rows_in_place
 from rttrr_pin.compile.build import STRAIGHT_LINE, build
-from rttrr_pin.compile.emit import Emitter, Executable, One, emitter
-from rttrr_pin.compile.program import Field, Program, Widths
+from rttrr_pin.compile.emit import Emitter, One, emitter
+from rttrr_pin.compile.program import Program
 from rttrr_pin.compile.quantities import QUANTITIES
 from rttrr_pin.compile.threads import MOST as MOST_THREADS
-from rttrr_pin.compile.trace import PayloadSlot, inputs_read, outputs_of
+from rttrr_pin.compile.trace import PayloadSlot, inputs_read
+from rttrr_pin.compile.variant import Variant, compiled
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import common_shape, overflow
 from rttrr_pin.core.inputs import Coordinates, check_quaternions, coordinates, finite
@@ -29,21 +29,6 @@ from rttrr_pin.errors import InputError, UnknownNameError
 
 Result = TypeVar("Result", bound=Array | dict[str, Array])
 """What a kernel returns: an array for a single output, a dict of them by name for several."""
-
-
-@dataclass(frozen=True)
-class Variant(Widths):
-    """The program for payloads at given links, loaded.
-
-    Attributes:
-        inputs: the arrays it reads.
-        outputs: the arrays it writes.
-        executable: what runs it.
-    """
-
-    inputs: tuple[Field, ...]
-    outputs: tuple[Field, ...]
-    executable: Executable
 
 
 class Kernel(Generic[Result]):
@@ -198,7 +183,7 @@ class Kernel(Generic[Result]):
         inputs = [as_rows(x, batch, rows) for x in (*arrays.values(), *numbers.values())]
         targets, results = self._targets(variant, out, batch, rows, inputs)
         count = threads.count(wanted_threads, rows * (variant.width_in + variant.width_out))
-        if rows and threads.run(_task(variant, inputs, targets, batch or (1,)), rows, count):
+        if rows and threads.run(variant.task(inputs, targets, batch or (1,)), rows, count):
             self._explain(arrays, numbers, variant, (inputs, targets))
         for result, target in zip(results, targets, strict=True):
             if not np.may_share_memory(result, target):
@@ -234,22 +219,13 @@ class Kernel(Generic[Result]):
         if slots not in self._variants:
             with threads.COMPILING:  # one thread compiles, the others wait and find it
                 if slots not in self._variants:
-                    self._variants[slots] = self._compiled(slots)
+                    self._variants[slots] = compiled(
+                        self.model, self.outputs, slots, self._straight_line, self._emitter
+                    )
                     if not slots and not self._floats:
                         self._without_payload = self._variants[slots].executable.one
                         self._one = self._without_payload if self._single else None
         return self._variants[slots]
-
-    def _compiled(self, slots: tuple[PayloadSlot, ...]) -> Variant:
-        straight_line = self._straight_line if self._emitter.calls else None
-        asked = repr((self.outputs, slots, straight_line))
-        name = cache.key(self._emitter.identity, fingerprint(self.model), asked)
-        code = cache.read(name)
-        if code is None:
-            code = self._emitter.emit(build(self.model, self.outputs, slots, straight_line, self._emitter.fuses))
-            cache.write(name, code)
-        inputs, outputs = inputs_read(self.model, self.outputs, slots), outputs_of(self.model, self.outputs)
-        return Variant(inputs, outputs, self._emitter.load(code, inputs, outputs))
 
     def _targets(
         self, variant: Variant, out: Any, batch: tuple[int, ...], rows: int, inputs: Sequence[NDArray[Any]]
@@ -268,7 +244,7 @@ class Kernel(Generic[Result]):
             elsewhere = own is not None and any(np.may_share_memory(own, x) for x in inputs)
             target = None if own is None or elsewhere else rows_in_place(own, rows, field.width)
             if own is not None and target is None and not elsewhere:
-                target = own if batch else own[None]  # in parts, see `_task`
+                target = own if batch else own[None]  # in parts, see `Variant.task`
             if target is None:
                 target = np.empty((rows, field.width))
             for other, result in zip(self.outputs, results, strict=False):  # those before it
@@ -297,51 +273,3 @@ class Kernel(Generic[Result]):
             bad = np.argwhere(~np.isfinite(target.reshape(-1, field.width)))
             if len(bad):
                 raise overflow(field.name, int(bad[0][0]), dict(zip(self._inputs, inputs, strict=False)))
-
-
-def _task(
-    variant: Variant, inputs: Sequence[NDArray[Any]], targets: Sequence[Array], batch: tuple[int, ...]
-) -> Callable[[int, int], bool]:
-    """The task of a batch; where the states of an array lie in no even rows, each part of it is copied in its turn."""
-    rows = prod(batch)
-    uneven = [x for x, field in zip(inputs, variant.inputs, strict=True) if x.shape != (rows, field.width)]
-    uneven += [y for y, field in zip(targets, variant.outputs, strict=True) if y.shape != (rows, field.width)]
-    if not uneven:
-        return variant.executable.bind(inputs, targets)
-
-    def part(start: int, stop: int) -> bool:
-        states = np.unravel_index(np.arange(start, stop), batch)
-        given = [x[start:stop] if x.ndim == 2 else x[states] for x in inputs]
-        results = [np.empty((stop - start, field.width)) for field in variant.outputs]
-        failed = variant.executable.bind(given, results)(0, stop - start)
-        for target, result, field in zip(targets, results, variant.outputs, strict=True):
-            if target.shape == (rows, field.width):
-                target[start:stop] = result
-            else:
-                target[states] = result.reshape(-1, *field.shape)
-        return failed
-
-    return part
-
-
-def fingerprint(model: Model) -> bytes:
-    """Everything of a robot that a program can depend on: all data but names, the provenance of numbers included.
-
-    Two robots of equal numbers can need two programs: a tensor that was turned is rounded, one that was read is not.
-    """
-    return repr([model.gravity.tobytes(), _data(model.links), _data(model.joints)]).encode()
-
-
-def _data(x: object) -> object:
-    """An object as what `repr` tells apart; arrays by their bits."""
-    if isinstance(x, np.ndarray):
-        return x.tobytes()
-    if isinstance(x, tuple):
-        return [_data(item) for item in x]
-    if is_dataclass(x):
-        return [type(x).__name__, *(_data(getattr(x, own.name)) for own in fields(x) if own.name not in UNREAD)]
-    return x
-
-
-UNREAD = {"name", "limits", "dynamics"}
-"""What of links and joints no program reads."""

@@ -55,8 +55,8 @@ class Recorded:
         fields = (Field("scalars", (len(self.is_column),)),), (Field("results", (len(results),)),)
         program = Program(self.graph, *fields, results)
         read = inputs_of(program.graph, program.results)
-        columns = tuple(place for place in read if self.is_column[place])
-        return Step(program, columns, tuple(place for place in read if not self.is_column[place]))
+        columns = tuple(index for index in read if self.is_column[index])
+        return Step(program, columns, tuple(index for index in read if not self.is_column[index]))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -89,11 +89,11 @@ class Outliner:
     origin: dict[int, tuple[CallSite, int]] = field(default_factory=dict)
     _fresh: Iterator[int] = field(default_factory=lambda: count(-1, -1))
 
-    def call(self, function: Callable[..., Any], *given: Any) -> Any:
+    def call(self, function: Callable[..., Any], *scalars: Any) -> Any:
         """The function's answer; its scalars are nodes that a step yields."""
-        structure, leaves = arguments(given, self.graph)
+        structure, leaves = arguments(scalars, self.graph)
         if not any(isinstance(leaf, Node) for leaf in leaves):
-            return function(*given)
+            return function(*scalars)
         recorded = self._recorded(function, structure, leaves)
         key = (recorded, *(leaf.number if isinstance(leaf, Node) else leaf for leaf in leaves))
         if key not in self.made:
@@ -105,7 +105,7 @@ class Outliner:
         key = (function, structure)
         if key not in self.steps:
             graph = Graph()
-            scalars = (Node(graph, graph.input(place)) for place in range(len(leaves)))
+            scalars = (Node(graph, graph.input(index)) for index in range(len(leaves)))
             answered = answer(function(*built(structure, scalars)), graph)
             self.steps[key] = Recorded(graph, tuple(isinstance(leaf, Node) for leaf in leaves), *answered)
         return self.steps[key]
@@ -137,8 +137,8 @@ class Outliner:
                 steps[taken.results[0]] = taken
                 needed.update(
                     leaf.number
-                    for place in taken.recorded.reads[output]
-                    if isinstance(leaf := taken.leaves[place], Node)
+                    for index in taken.recorded.reads[output]
+                    if isinstance(leaf := taken.leaves[index], Node)
                 )
         return [steps[first] for first in sorted(steps)]
 

@@ -106,7 +106,7 @@ class Program(Widths):
     def unread(self) -> tuple[int, ...]:
         """Places of inputs that no output depends on; what is not finite there would go unseen."""
         read = set(inputs_of(self.graph, self.results))
-        return tuple(place for place in range(self.width_in) if place not in read)
+        return tuple(index for index in range(self.width_in) if index not in read)
 
     @cached_property
     def operations(self) -> Operations:

@@ -22,7 +22,7 @@ def arranged(
     last_reads = {x: k for k, one in enumerate(taken) for x in _read(one)}
     columns = _Columns(outliner.graph, width, results, last_reads)
     calls = [columns.call(k, index[one.recorded.step], one) for k, one in enumerate(taken)]
-    rest = [columns.rest(place, x) for place, x in enumerate(results)]
+    rest = [columns.rest(position, x) for position, x in enumerate(results)]
     seen = _seen(taken, results)
     return CallProgram(
         steps=tuple(steps),
@@ -30,13 +30,13 @@ def arranged(
         inputs=inputs,
         outputs=outputs,
         between=columns.count - width - len(results),
-        unread=tuple(place for place in range(width) if outliner.graph.input(place) not in seen),
+        unread=tuple(k for k in range(width) if outliner.graph.input(k) not in seen),
     )
 
 
 def _read(one: CallSite) -> list[int]:
     """The nodes in the columns that a step reads."""
-    return [leaf.number for place in one.recorded.step.columns if isinstance(leaf := one.leaves[place], Node)]
+    return [leaf.number for index in one.recorded.step.columns if isinstance(leaf := one.leaves[index], Node)]
 
 
 def _seen(taken: Sequence[CallSite], results: Sequence[int]) -> set[int]:
@@ -45,7 +45,7 @@ def _seen(taken: Sequence[CallSite], results: Sequence[int]) -> set[int]:
     for one in reversed(taken):
         for k, x in enumerate(one.live()):
             if x in seen:
-                leaves = (one.leaves[place] for place in one.recorded.step.reads[k])
+                leaves = (one.leaves[index] for index in one.recorded.step.reads[k])
                 seen.update(leaf.number for leaf in leaves if isinstance(leaf, Node))
     return seen
 
@@ -65,8 +65,8 @@ class _Columns:
     def __post_init__(self) -> None:
         self.count = self.width + len(self.results)
         # A result is computed where it is returned; of one that is returned twice, the first place is its own (`rest`).
-        self.of = {x: self.width + place for place, x in reversed(list(enumerate(self.results)))}
-        self.of |= {self.graph.input(place): place for place in range(self.width)}
+        self.of = {x: self.width + index for index, x in reversed(list(enumerate(self.results)))}
+        self.of |= {self.graph.input(index): index for index in range(self.width)}
 
     def call(self, k: int, step: int, one: CallSite) -> Call:
         """The call, with columns for what it yields; they may be those of what it reads last."""
@@ -79,22 +79,24 @@ class _Columns:
             if x not in self.of:
                 self.of[x] = self._column()
         self._release(x for x in live if x not in self.last)  # written because other calls of this step need it
-        leaves = (one.leaves[place] for place in one.recorded.step.numbers)
+        leaves = (one.leaves[index] for index in one.recorded.step.numbers)
         numbers = tuple(leaf for leaf in leaves if not isinstance(leaf, Node))
         return Call(step, columns, numbers, tuple(self.of[x] for x in live))
 
     def _release(self, nodes: Iterable[int]) -> None:
         columns = (self.of[x] for x in nodes if x in self.of)
+        # Results stay until they are scattered, and inputs until all calls are done: an output may be one (`rest`).
         self.free.extend(column for column in columns if column >= self.width + len(self.results))
 
     def _column(self) -> int:
+        # The one freed last is the one most likely to be in the cache still.
         if not self.free:
             self.count += 1
         return self.free.pop() if self.free else self.count - 1
 
-    def rest(self, place: int, x: int) -> Call | None:
+    def rest(self, index: int, x: int) -> Call | None:
         """What fills the column of an output that no step wrote."""
-        column = self.width + place
+        column = self.width + index
         if self.of[x] != column:
             return Call(COPY, (self.of[x],), (), (column,))
         return Call(FILL, (), (self.graph.value[x],), (column,)) if x in self.graph.value else None

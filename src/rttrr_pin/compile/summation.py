@@ -68,7 +68,7 @@ class _Chainer:
             return abs(float(graph.value[x]))
         if op is Op.MUL:
             return self.sizes[args[0]] * self.sizes[args[1]]
-        if op in SUMS:
+        if op in SUMS:  # terms of either sign: their sum is as large as a random walk's, and not as all together
             return math.hypot(self.sizes[args[0]], self.sizes[args[1]])
         return self.sizes[args[0]] if op in (Op.NEG, Op.ABS) else 1.0
 
@@ -94,7 +94,7 @@ class _Chainer:
             y, negative = waiting.pop()
             if self._opens(y):
                 waiting += ((z, negative != turned) for z, turned in zip(old.args[y], SIGNS[old.op[y]], strict=True))
-            elif old.op[y] is Op.CONSTANT:
+            elif old.op[y] is Op.CONSTANT:  # constants of one sum are one number, added once
                 constant = constant - old.value[y] if negative else constant + old.value[y]
             else:
                 node, turned = self._bare(self.built[y])

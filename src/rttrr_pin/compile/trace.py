@@ -80,7 +80,7 @@ def record(
     if regrouped and not any(quantity.of_links for quantity in wanted):
         model, links = regroup(model, bodies(model, arithmetic))
     inputs = inputs_read(model, outputs, payloads)
-    columns = (Node(graph, graph.input(place)) for place in range(sum(field.width for field in inputs)))
+    columns = (Node(graph, graph.input(index)) for index in range(sum(field.width for field in inputs)))
     values = {field.name: [next(columns) for _ in range(field.width)] for field in inputs}
     motion = Motion(
         model,

@@ -13,7 +13,6 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import accumulate
 from typing import Any
 
 import numpy as np
@@ -158,9 +157,7 @@ def random_motion(model: Model, columns: int) -> tuple[Array, Array, Array]:
     unit = np.where(turns, 1.0, L)
     largest = (unit * np.where(turns, math.pi, 1.0), unit * math.sqrt(GRAVITY / L), unit * (GRAVITY / L))
     q, v, a = (rng.uniform(-1.0, 1.0, (states, model.nv)) * size for size in largest)
-    begins = accumulate((joint.nv for joint in model.moving), initial=0)
-    own = [x.type.coordinates_at(q[:, at : at + x.nv]) for at, x in zip(begins, model.moving, strict=False)]
-    return np.hstack([np.empty((states, 0)), *own]), v, a
+    return model.coordinates_at(q), v, a
 
 
 def as_forces(model: Model, Y: Array) -> Array:

@@ -112,17 +112,17 @@ def real(name: str, values: ArrayLike) -> Array:
     return np.asarray(array, dtype=np.float64)
 
 
-def whole_number(name: str, value: object, least: int, most: int, shown: str = "") -> int:
-    """An integer in a range; a bool is none.
+def whole_number(name: str, value: object, least: int, most: int, shown: str = "", option: str = "") -> int:
+    """An integer in a range; a bool is none. `option` is what the command line calls it.
 
     Raises:
         InputError: it is of another type, or out of range.
     """
-    wanted = f"expected a whole number from {least} to {shown or most}"
+    wanted, options = f"expected a whole number from {least} to {shown or most}", {name: option} if option else {}
     if isinstance(value, (bool, np.bool_)) or not isinstance(value, (int, np.integer)):
-        raise InputError(f"{name} is {value!r} ({type(value).__name__}): {wanted}")
+        raise InputError(f"{name} is {value!r} ({type(value).__name__}): {wanted}", options)
     if not least <= value <= most:
-        raise InputError(f"{name} is {value}: {wanted}")
+        raise InputError(f"{name} is {value}: {wanted}", options)
     return int(value)
 
 

@@ -111,10 +111,10 @@ class Model:
                 f"{len(self.joints)} joints for {len(self.links)} links: expected one joint for each link "
                 "but the root, which is passed apart"
             )
-        for kind, names in (("link", self.link_names), ("joint", tuple(joint.name for joint in self.joints))):
+        for element, names in (("link", self.link_names), ("joint", tuple(joint.name for joint in self.joints))):
             twice = [name for name in names if names.count(name) > 1] if len(set(names)) < len(names) else []
             if twice:
-                raise InputError(f"{kind} {twice[0]!r} stands {names.count(twice[0])} times: give each its own name")
+                raise InputError(f"{element} {twice[0]!r} stands {names.count(twice[0])} times: give each its own name")
         for i, joint in enumerate(self.joints):
             if not -1 <= joint.parent < i:
                 raise InputError(
@@ -159,6 +159,14 @@ class Model:
         """Where in q each unit quaternion (x, y, z, w) begins."""
         begins = accumulate((joint.nq for joint in self.moving), initial=0)
         return tuple(at + k for at, joint in zip(begins, self.moving, strict=False) for k in joint.type.quaternions)
+
+    def coordinates_at(self, displacement: Array) -> Array:
+        """Coordinates, (N, nq), that a displacement from zero along each degree of freedom, (N, nv), leads to."""
+        begins = accumulate((joint.nv for joint in self.moving), initial=0)
+        own = [
+            x.type.coordinates_at(displacement[:, at : at + x.nv]) for at, x in zip(begins, self.moving, strict=False)
+        ]
+        return np.hstack([np.zeros((len(displacement), 0)), *own])
 
     @property
     def link_names(self) -> tuple[str, ...]:

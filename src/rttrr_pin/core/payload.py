@@ -85,7 +85,8 @@ def payload_link(model: Model, name: str | None) -> int:
     names = ", ".join(model.link_names[i] for i in leaves) or "none"
     raise InputError(
         f"the payload names no link, and robot {model.name!r} has {len(leaves)} last links ({names}): "
-        "pass Wrench(..., link=NAME)"
+        "pass Wrench(..., link=NAME)",
+        options={"Wrench(..., link=NAME)": "--payload-link NAME"},
     )
 
 

@@ -72,7 +72,7 @@ class Presenter:
     def __init__(self, symbols: Mapping[str, Symbol]) -> None:
         self.symbols = symbols
         self._rank = {
-            name: ((*GROUPS, *WITHIN).index(symbol.role), place) for place, (name, symbol) in enumerate(symbols.items())
+            name: ((*GROUPS, *WITHIN).index(symbol.role), rank) for rank, (name, symbol) in enumerate(symbols.items())
         }
         self._cosines = {
             "c" + name.removeprefix("s"): name for name, symbol in symbols.items() if symbol.role is Role.SINE

@@ -18,13 +18,13 @@ class Angle:
 
     Attributes:
         suffix: the symbols are called s_SUFFIX and c_SUFFIX.
-        place: of the coordinate in q, from 1.
+        index: of the coordinate in q, from 1.
         multiplier: 1 but for a joint that follows another.
         offset: [rad], 0 but for a joint that follows another.
     """
 
     suffix: str
-    place: int
+    index: int
     multiplier: float = 1.0
     offset: float = 0.0
 

@@ -86,13 +86,13 @@ class Ring:
 
     def polynomial(self, terms: Mapping[Factors, Fraction]) -> Polynomial:
         """The polynomial with these terms."""
-        place = {name: i for i, name in enumerate(self._names)}
+        column = {name: i for i, name in enumerate(self._names)}
         width = max(1, len(self._names))
         entries: dict[tuple[int, ...], fmpq] = {}
         for factors, coefficient in terms.items():
             exponents = [0] * width
             for name, power in factors:
-                exponents[place[name]] = power
+                exponents[column[name]] = power
             entries[tuple(exponents)] = fmpq(coefficient.numerator, coefficient.denominator)
         return self._context.from_dict(entries)
 

@@ -44,7 +44,7 @@ VECTORS = {
 }
 """What a finished vector is called in LaTeX, and its dimension."""
 
-Place = tuple[str, int, int]
+Component = tuple[str, int, int]
 """Which vector, of which link from 0, which axis."""
 
 
@@ -96,7 +96,7 @@ class Stepwise:
     def __init__(self, robot: SymbolicRobot) -> None:
         taken = {symbol.name for symbol in (*robot.motion, *robot.parameters.symbols)}
         self._names = _free_names(len(robot.model.links), taken)
-        self._places = {name: place for place, name in self._names.items()}
+        self._places = {name: component for component, name in self._names.items()}
         self.robot = robot = replace(robot, steps=tuple(Symbol(name, name, Role.STEP) for name in self._places))
         self.steps: dict[str, Step] = {}
         # first, whatever is asked for: the other runs share its w
@@ -181,24 +181,24 @@ class Stepwise:
         arithmetic = symbolic_arithmetic(robot, keep)
         return dynamics(run.model, arithmetic, robot.q, run.v, run.a, run.payloads, bodies, run.gravity)
 
-    def _kept(self, place: Place, x: Scalar, run: Run) -> Scalar:
+    def _kept(self, component: Component, x: Scalar, run: Run) -> Scalar:
         """What stands for a component from now on."""
         if not run.dual:
-            return self._named(place, x, run)
-        vector, link, axis = place
+            return self._named(component, x, run)
+        vector, link, axis = component
         if vector != "w":
-            return Dual(0, {0: self._named(place, _part(x), run)})
-        return Dual(self._named(place, value_of(x), run), {0: self._named((SPIN, link, axis), _part(x), run)})
+            return Dual(0, {0: self._named(component, _part(x), run)})
+        return Dual(self._named(component, value_of(x), run), {0: self._named((SPIN, link, axis), _part(x), run)})
 
-    def _named(self, place: Place, x: Scalar, run: Run) -> Scalar:
+    def _named(self, component: Component, x: Scalar, run: Run) -> Scalar:
         """The component itself where it is short, else its name."""
         polynomial = self.robot.ring.reduced(x)
         if len(polynomial) == 0 or (len(polynomial) == 1 and polynomial.total_degree() <= 1):
             return polynomial
-        name = self._names[place]
+        name = self._names[component]
         outside = self._outside(name, run.suffix)
         if outside not in self.steps:
-            self.steps[outside] = Step(_symbol(place, outside, run), self._terms(polynomial, run))
+            self.steps[outside] = Step(_symbol(component, outside, run), self._terms(polynomial, run))
         return self.robot.ring[name]
 
 
@@ -219,21 +219,21 @@ def _order(links: int) -> Iterator[tuple[str, int]]:
     yield from ((vector, link) for link in reversed(range(links)) for vector in INWARDS)
 
 
-def _free_names(links: int, taken: set[str]) -> dict[Place, str]:
+def _free_names(links: int, taken: set[str]) -> dict[Component, str]:
     """A name for each component, with a _ behind it where a symbol has that name."""
-    names: dict[Place, str] = {}
-    for place in ((vector, link, axis) for vector in VECTORS for link in range(links) for axis in range(3)):
-        vector, link, axis = place
+    names: dict[Component, str] = {}
+    for component in ((vector, link, axis) for vector in VECTORS for link in range(links) for axis in range(3)):
+        vector, link, axis = component
         name = f"{vector}_{link + 1}{AXES[axis]}"
         while name in taken:
             name += "_"
-        names[place] = name
+        names[component] = name
     return names
 
 
-def _symbol(place: Place, name: str, run: Run) -> Symbol:
+def _symbol(component: Component, name: str, run: Run) -> Symbol:
     """The symbol of a step; w itself is that of the motion in every run."""
-    vector, link, axis = place
+    vector, link, axis = component
     base, dimension = VECTORS[vector]
     if vector == "w" or not run.latex:
         return Symbol(name, f"{{}}^{index(link + 1)}{base}_{AXES[axis]}", Role.STEP, dimension)

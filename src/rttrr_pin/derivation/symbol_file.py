@@ -113,8 +113,8 @@ def read_symbols(
             beside = path.parent / name  # a file; where there is none, the name is what `load` takes
             model = load(str(beside) if beside.is_file() else name, xacro=xacro).model
         _check_frames(model, links)
-        places = [model.link_index(link.get("name", str)) for link in links]
-        slots = {_moved(slot, places): x for slot, x in slots.items()}
+        indices = [model.link_index(link.get("name", str)) for link in links]
+        slots = {_moved(slot, indices): x for slot, x in slots.items()}
         values = _values_in(model, slots, values, about)
     else:
         if not links:
@@ -181,11 +181,11 @@ def _slots(links: Sequence[Table], about: Table, names: Sequence[str]) -> Iterat
     for i, link in enumerate(links):
         link.only(LINK_KEYS)
         read = _reader(link, names)
-        for key, places in PLACES.items():
+        for key, entries in PLACES.items():
             if key in link.entries:
-                for place, text in zip(places, link.texts(key, len(places)), strict=True):
-                    yield (key, i, *place), read(text)
-                    yield (key, i, *place[::-1]), read(text)  # tensors are symmetric
+                for axes, text in zip(entries, link.texts(key, len(entries)), strict=True):
+                    yield (key, i, *axes), read(text)
+                    yield (key, i, *axes[::-1]), read(text)  # tensors are symmetric
     if "gravity" in about.entries:
         for x, text in enumerate(about.texts("gravity", 3)):
             yield ("gravity", x), _reader(about, names)(text)
@@ -241,9 +241,9 @@ def _check_frames(model: Model, links: Sequence[Table]) -> None:
                 )
 
 
-def _moved(slot: Slot, places: Sequence[int]) -> Slot:
+def _moved(slot: Slot, indices: Sequence[int]) -> Slot:
     """A slot whose link is counted as in the model."""
-    return slot if slot[0] == "gravity" else (slot[0], places[int(slot[1])], *slot[2:])
+    return slot if slot[0] == "gravity" else (slot[0], indices[int(slot[1])], *slot[2:])
 
 
 def _values_in(
@@ -269,11 +269,11 @@ def _values_in(
 
 
 def _slot_name(model: Model, slot: Slot) -> str:
-    place = [int(x) for x in slot[1:]]
+    indices = [int(x) for x in slot[1:]]
     if slot[0] == "gravity":
-        return f"gravity {AXES[place[0]]}"
-    axes = "".join(AXES[x] for x in place[1:])
-    return " ".join(filter(None, (str(slot[0]), axes, "of", model.links[place[0]].name)))
+        return f"gravity {AXES[indices[0]]}"
+    axes = "".join(AXES[x] for x in indices[1:])
+    return " ".join(filter(None, (str(slot[0]), axes, "of", model.links[indices[0]].name)))
 
 
 def _usual(symbols: Sequence[Symbol], slots: Mapping[Slot, Expression]) -> dict[str, float]:

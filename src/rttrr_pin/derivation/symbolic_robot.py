@@ -157,8 +157,8 @@ class SymbolicRobot:
             parameters=tuple(exact(x) for x in joint.type.parameters),
         )
 
-    def _vector(self, quantity: str, place: tuple[int, ...], values: Iterable[float]) -> Vector:
-        return Vector(*(self._number((quantity, *place, x), float(value)) for x, value in enumerate(values)))
+    def _vector(self, quantity: str, indices: tuple[int, ...], values: Iterable[float]) -> Vector:
+        return Vector(*(self._number((quantity, *indices, x), float(value)) for x, value in enumerate(values)))
 
     def _number(self, slot: Slot, value: float) -> Scalar:
         if slot in self.parameters.slots:
@@ -174,7 +174,7 @@ class SymbolicRobot:
     def _angles(self) -> dict[str, str]:
         """The suffix of the sine and cosine of each angle, by the angle's polynomial."""
         return {
-            str(self.ring[f"q_{angle.place}"] * exact(angle.multiplier) + exact(angle.offset)): angle.suffix
+            str(self.ring[f"q_{angle.index}"] * exact(angle.multiplier) + exact(angle.offset)): angle.suffix
             for angle in angles(self.model)
         }
 
@@ -218,11 +218,11 @@ def _parameters(model: Model, named: Iterable[_Named]) -> ParameterSymbols:
     symbols: list[Symbol] = []
     slots: dict[Slot, Expression] = {}
     values: dict[str, float] = {}
-    for name, latex, places, sign in named:
-        slot_type = SLOTS[places[0][0]]
+    for name, latex, own_slots, sign in named:
+        slot_type = SLOTS[own_slots[0][0]]
         symbols.append(Symbol(name, latex, slot_type.role, slot_type.dimension))
-        values[name] = sign * value_of_slot(model, places[0])
-        slots |= {slot: {((name, 1),): Fraction(sign)} for slot in places}
+        values[name] = sign * value_of_slot(model, own_slots[0])
+        slots |= {slot: {((name, 1),): Fraction(sign)} for slot in own_slots}
     return ParameterSymbols(tuple(symbols), slots, values)
 
 

@@ -29,6 +29,11 @@ class Dimension(NamedTuple):
         """The dimension of a product, self other^power."""
         return Dimension(*(own + power * more for own, more in zip(self, other, strict=True)))
 
+    @property
+    def unit(self) -> str:
+        """What people write for it."""
+        return UNITS.get(self, str(self))
+
     def __str__(self) -> str:
         units = zip(("m", "kg", "s"), self, strict=True)
         return " ".join(unit if power == 1 else f"{unit}^{power}" for unit, power in units if power) or "1"
@@ -41,6 +46,17 @@ INERTIA = Dimension(length=2, mass=1)
 ACCELERATION = Dimension(length=1, time=-2)
 FORCE = Dimension(length=1, mass=1, time=-2)
 MOMENT = Dimension(length=2, mass=1, time=-2)
+
+UNITS: Mapping[Dimension, str] = {
+    ACCELERATION: "m/s^2",
+    FORCE: "N",
+    MOMENT: "N m",
+    INERTIA: "kg m^2",
+    Dimension(time=-1): "rad/s",
+    Dimension(time=-2): "rad/s^2",
+    Dimension(length=1, time=-1): "m/s",
+}
+"""Units that are not written as the powers of m, kg and s in this order."""
 
 DIMENSIONS: Mapping[str, Dimension] = {
     "number": NUMBER,

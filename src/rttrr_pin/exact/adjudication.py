@@ -130,5 +130,5 @@ def walk(model: Model) -> Iterator[tuple[str, int]]:
 def in_order(model: Model, deviations: Sequence[Deviation]) -> tuple[Deviation, ...]:
     """Deviations by quantity and place, in the order in which the recursion completes them."""
     names = {"tau": model.v_names} | dict.fromkeys(LINK_QUANTITIES, model.link_names)
-    order = {(quantity, names[quantity][place]): k for k, (quantity, place) in enumerate(walk(model))}
+    order = {(quantity, names[quantity][index]): k for k, (quantity, index) in enumerate(walk(model))}
     return tuple(sorted(deviations, key=lambda one: order[one.quantity, one.at]))

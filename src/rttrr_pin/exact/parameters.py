@@ -23,17 +23,23 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import Arithmetic
 from rttrr_pin.errors import InputError
 from rttrr_pin.urdf.decimals import Number, NumberList
-from rttrr_pin.urdf.document import ZEROS, Placement, UrdfDocument, UrdfInertial, UrdfJoint, rows_of_quaternion
+from rttrr_pin.urdf.document import (
+    NO_INERTIAL,
+    ZEROS,
+    Placement,
+    UrdfDocument,
+    UrdfInertial,
+    UrdfJoint,
+    rows_of_quaternion,
+)
 from rttrr_pin.urdf.reader import model_of
-from rttrr_pin.urdf.vocabulary import ATTRIBUTES
 
 InverseRoot = Callable[[Fraction], Scalar]
 Parameters = Literal["doubles", "read", "text"]
 
 ZERO = Number("0")
-NO_INERTIA = UrdfInertial(Placement(), ZERO, dict.fromkeys(ATTRIBUTES["inertia"], ZERO))
 BASE_JOINT = UrdfJoint("", 0, "floating", "", "", Placement(), ZEROS, None, None, ZERO, ZERO)
-"""A link without <inertial>, and the joint of a floating base, which no file has."""
+"""The joint of a floating base, which no file has."""
 
 Exact = Callable[[Number], Fraction]
 """From a number of the file to a rational."""
@@ -121,7 +127,7 @@ def exact_parameters(model: Model, parameters: Literal["read", "text"]) -> Exact
         )
     exact = READ[parameters]
     own = tuple(document.joints.get(joint.name, BASE_JOINT) for joint in model.joints)
-    inertials = tuple(document.links[link.name].inertial or NO_INERTIA for link in model.links)
+    inertials = tuple(document.links[link.name].inertial or NO_INERTIAL for link in model.links)
     joints = tuple(_joint(joint, document, exact) for joint in model.joints)
     return ExactParameters(replace(model, joints=joints), inertials, own, exact)
 
@@ -131,11 +137,7 @@ def _joint(joint: Joint, document: UrdfDocument, exact: Exact) -> Joint:
     own = document.joints.get(joint.name, BASE_JOINT)
     mimic: Any = joint.mimic
     if mimic is not None:
-        multiplier, offset, followed = Fraction(1), Fraction(0), own
-        while followed.mimic is not None:
-            offset += multiplier * exact(followed.mimic.offset)
-            multiplier *= exact(followed.mimic.multiplier)
-            followed = document.joints[followed.mimic.joint]
+        _, multiplier, offset, _ = document.followed(own, exact)
         mimic = Mimic(mimic.joint, multiplier, offset)  # type: ignore[arg-type]
 
     def number(of_file: Number, set_since: float) -> Any:

@@ -64,7 +64,8 @@ class Function:
         """What the function returns, state by state or at once."""
         if batch.loads:
             raise ImplementationError(
-                f"{self.name} takes q, v, a and no payload: pass payload=None, or write an Implementation"
+                f"{self.name} takes q, v, a and no payload: pass payload=None, or write an Implementation",
+                options={"pass payload=None": "leave --payload out"},
             )
         if self.takes_batches:
             return Evaluation(self._checked(self._call(batch.first, batch.q, batch.v, batch.a), (len(batch),)))

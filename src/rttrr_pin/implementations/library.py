@@ -70,10 +70,10 @@ Convert = Callable[[LibraryJoint, Array, Array, Array], tuple[Array, Array, Arra
 """From a joint's q, v, a in our convention to those in the library's."""
 
 
-def library_joints(model: Model, place: Callable[[Joint, Link], tuple[slice, slice]]) -> list[LibraryJoint]:
+def library_joints(model: Model, slices: Callable[[Joint, Link], tuple[slice, slice]]) -> list[LibraryJoint]:
     """The moving joints, in our order; `place` says where a library has q and v of the joint that carries a link."""
     pairs = zip(model.joints, model.links, strict=True)
-    return [LibraryJoint(joint, *place(joint, link)) for joint, link in pairs if joint.nv]
+    return [LibraryJoint(joint, *slices(joint, link)) for joint, link in pairs if joint.nv]
 
 
 def own_states(model: Model, batch: Batch) -> list[Any]:

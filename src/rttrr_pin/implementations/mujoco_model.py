@@ -111,12 +111,12 @@ def own_refusal(urdf: str) -> str:
 def mujoco_joints(model: Model, compiled: Any) -> list[library.LibraryJoint]:
     """The moving joints, in our order."""
 
-    def place(joint: Joint, link: Link) -> tuple[slice, slice]:
+    def slices(joint: Joint, link: Link) -> tuple[slice, slice]:
         first = compiled.body_jntadr[compiled.body(PREFIX + link.name).id]  # of those that MuJoCo makes one of
         q, v = int(compiled.jnt_qposadr[first]), int(compiled.jnt_dofadr[first])
         return slice(q, q + joint.nq), slice(v, v + joint.nv)
 
-    return library.library_joints(model, place)
+    return library.library_joints(model, slices)
 
 
 def rotation_of(quaternion: Any) -> Array:
@@ -258,8 +258,8 @@ def _make_floating(body: Any) -> None:
     """Slides along x, y, z and a ball in place of the free joint, if there is one."""
     first = body.joints[0] if body.joints else body.add_joint()
     parts = [first, *(body.add_joint() for _ in range(3))]
-    for part, kind, axis in zip(parts, MADE_OF[FLOATING], [*np.eye(3), np.array([0.0, 0.0, 1.0])], strict=True):
-        part.type, part.axis = kind, axis
+    for part, joint_type, axis in zip(parts, MADE_OF[FLOATING], [*np.eye(3), np.array([0.0, 0.0, 1.0])], strict=True):
+        part.type, part.axis = joint_type, axis
 
 
 def _complete(compiled: Any) -> None:

@@ -98,11 +98,11 @@ def _printed(lines: Sequence[str]) -> str:
 def pin_joints(model: Model, pin_model: Any) -> list[library.LibraryJoint]:
     """The moving joints, in our order."""
 
-    def place(joint: Joint, link: Link) -> tuple[slice, slice]:
+    def slices(joint: Joint, link: Link) -> tuple[slice, slice]:
         built = pin_model.joints[pin_model.getJointId(joint.name)]
         return slice(built.idx_q, built.idx_q + built.nq), slice(built.idx_v, built.idx_v + built.nv)
 
-    return library.library_joints(model, place)
+    return library.library_joints(model, slices)
 
 
 def pin_links(model: Model, pin_model: Any) -> list[PinLink]:

@@ -162,9 +162,12 @@ def quantities_of(reply: object, who: str) -> dict[str, object]:
 def trial_states(model: Model, count: int = 3) -> tuple[Array, Array, Array]:
     """States that differ in every coordinate, to find out what a program of the user's gives."""
     fractions = np.linspace(0.1, 0.3, count)[:, None]
-    parts = [joint.type.coordinates_at(fractions * np.arange(1, joint.nv + 1)) for joint in model.moving]
-    q = np.concatenate([np.zeros((count, 0)), *parts], axis=1)
-    return q, (fractions - 0.1) * np.ones(model.nv), (0.4 - fractions) * np.ones(model.nv)
+    steps = [step for joint in model.moving for step in range(1, joint.nv + 1)]
+    return (
+        model.coordinates_at(fractions * steps),
+        (fractions - 0.1) * np.ones(model.nv),
+        (0.4 - fractions) * np.ones(model.nv),
+    )
 
 
 def _counted(value: object, count: int, where: str) -> list[str]:

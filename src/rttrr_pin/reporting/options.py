@@ -75,13 +75,24 @@ quiet = flag("--quiet", "-q", help="Print nothing but errors.")
 outcome = group(target("--json", "the outcome as JSON"), quiet)
 
 
-def xacro_arguments(words: Iterable[str]) -> dict[str, object]:
+def xacro_arguments(words: Iterable[str]) -> dict[str, str]:
     """The words of `--xacro-arg`, by name."""
-    values: dict[str, object] = {}
+    return _by_name("--xacro-arg", words, ":=", "NAME:=VALUE, such as dof:=7")
+
+
+def packages_of(words: Iterable[str]) -> dict[str, str]:
+    """The folders of `--package`, by the names of packages."""
+    form = "NAME=FOLDER, such as my_description=ws/my_description"
+    return _by_name("--package", words, "=", form, may_be_empty=False)
+
+
+def _by_name(option: str, words: Iterable[str], sign: str, form: str, may_be_empty: bool = True) -> dict[str, str]:
+    """The values of an option that repeats, by their names."""
+    values = {}
     for word in words:
-        name, sign, value = word.partition(":=")
-        if not sign or not name:
-            raise InputError(f"--xacro-arg is {word!r}: expected NAME:=VALUE, such as dof:=7")
+        name, separator, value = word.partition(sign)
+        if not (name and separator and (value or may_be_empty)):
+            raise InputError(f"{option} is {word!r}: expected {form}")
         values[name] = value
     return values
 
@@ -100,17 +111,6 @@ def numbers_of(option: str, text: str, count: int) -> list[float]:
     return numbers
 
 
-def packages_of(words: Iterable[str]) -> dict[str, str]:
-    """Folders by the names of packages."""
-    packages = {}
-    for word in words:
-        name, equals, folder = word.partition("=")
-        if not (name and equals and folder):
-            raise InputError(f"--package is {word!r}: expected NAME=FOLDER, such as my_description=ws/my_description")
-        packages[name] = folder
-    return packages
-
-
 def check_targets(targets: Mapping[str, str | Path | None], sources: Iterable[str | Path] = ()) -> None:
     """Before the work is done: every output can be written, none overwrites an input or another output.
 
@@ -125,14 +125,14 @@ def check_targets(targets: Mapping[str, str | Path | None], sources: Iterable[st
     for option, where in targets.items():
         if where is None:
             continue
-        place = "stdout" if str(where) == "-" else _writable(option, Path(where))
-        if place in owners:
-            owner, name = owners[place], "stdout" if place == "stdout" else where
+        identity = "stdout" if str(where) == "-" else _writable(option, Path(where))
+        if identity in owners:
+            owner, name = owners[identity], "stdout" if identity == "stdout" else where
             if owner == "the input":
                 raise InputError(f"{option} {name} would overwrite the input: give it another file")
             raise InputError(f"{owner} and {option} both go to {name}: give each a file of its own")
-        if place is not None:
-            owners[place] = option
+        if identity is not None:
+            owners[identity] = option
     owners.pop(None, None)
 
 

@@ -49,7 +49,7 @@ def document(preamble: str, body: str) -> str:
         preamble: what this document needs besides what all have.
         body: what stands between begin and end.
     """
-    text = CONTROL.sub(lambda found: " " if found[0].isspace() else "?", body)
+    text = CONTROL.sub(lambda character: " " if character[0].isspace() else "?", body)
     letters = "\n".join(_declared(text))
     declared = f"\\ifpdftex\n{letters}\n\\fi\n" if letters else ""
     return f"{CLASS}{preamble}{declared}\\begin{{document}}\n{text}\n\n\\end{{document}}\n"

@@ -266,6 +266,18 @@ class UrdfDocument:
         """What a user of the model must know: what was assumed, and what is not modelled."""
         return tuple(fault for fault in self.faults if fault.level is not Level.NOTE or fault.kind == "not-modelled")
 
+    def followed(
+        self, joint: UrdfJoint, exact: Callable[[Number], Fraction]
+    ) -> tuple[UrdfJoint, Fraction, Fraction, int]:
+        """Whom a joint follows in the end, with what multiplier and offset, and through how many mimics."""
+        multiplier, offset, mimics = Fraction(1), Fraction(0), 0  # exact, so that a chain is rounded once
+        while joint.moves and (mimic := joint.mimic) is not None:
+            offset += multiplier * exact(mimic.offset)
+            multiplier *= exact(mimic.multiplier)
+            mimics += 1
+            joint = self.joints[mimic.joint]
+        return joint, multiplier, offset, mimics
+
     @cached_property
     def carried_by(self) -> dict[str, UrdfJoint]:
         """The joint of each link but the root."""

@@ -92,16 +92,11 @@ def _located(document: UrdfDocument, tag: str, element: UrdfLink | UrdfJoint) ->
 
 def _mimic(joint: UrdfJoint, document: UrdfDocument, index: dict[str, int]) -> Mimic | None:
     """Whom a joint follows in the end: chains of mimics are multiplied out."""
-    multiplier, offset, followed = Fraction(1), Fraction(0), 0  # exact, so that a chain is rounded once
-    while joint.moves and (mimic := joint.mimic) is not None:
-        offset += multiplier * Fraction(float(mimic.offset))
-        multiplier *= Fraction(float(mimic.multiplier))
-        followed += 1
-        joint = document.joints[mimic.joint]
-    if not followed:
+    leader, multiplier, offset, mimics = document.followed(joint, lambda number: Fraction(float(number)))
+    if not mimics:
         return None
     try:
-        return Mimic(index[joint.name], float(multiplier), float(offset), rounded=followed > 1)
+        return Mimic(index[leader.name], float(multiplier), float(offset), rounded=mimics > 1)
     except OverflowError:
         raise InputError("a chain of mimics has a multiplier or an offset that float64 cannot hold") from None
 

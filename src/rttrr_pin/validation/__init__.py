@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from rttrr_pin.core.scalars import EPS
 from rttrr_pin.validation.compare import Comparison, Row
-from rttrr_pin.validation.run import ReferenceSummary, Validation, validate
+from rttrr_pin.validation.run import Validation, validate
 from rttrr_pin.validation.sampling import SAMPLINGS, Sampler
 from rttrr_pin.validation.state import StateComparison, StateReport, compare_state
 
@@ -19,7 +19,6 @@ __all__ = [
     "SAMPLINGS",
     "Comparison",
     "Entry",
-    "ReferenceSummary",
     "Row",
     "Sampler",
     "StateComparison",

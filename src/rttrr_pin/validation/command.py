@@ -112,8 +112,8 @@ def _faults(robot: Robot, source: str) -> list[str]:
     from rttrr_pin.inspection.run import count_errors
 
     errors = count_errors(document)
-    found = "1 error" if errors == 1 else f"{errors} errors"
-    return [f"inspect finds {found} in this file: {shlex.join(['rttrr-pin', 'inspect', source])}"] if errors else []
+    count = "1 error" if errors == 1 else f"{errors} errors"
+    return [f"inspect finds {count} in this file: {shlex.join(['rttrr-pin', 'inspect', source])}"] if errors else []
 
 
 def _validate_several(

@@ -10,8 +10,9 @@ no tolerance to choose.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import asdict, dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -133,20 +134,39 @@ class Difference:
 
 
 class Comparison:
-    """Gathers the worst over any number of states, in memory that does not grow with them.
+    """What is seen of one reference: the worst over any number of states, in memory that does not grow with them.
 
     Attributes:
+        name: of the program.
+        version: of it.
         quantities: those that both programs give.
         rows: of each quantity at each link or joint.
         whole: by quantity, the largest relative error in eps, in the norm over all links or joints; as `Row.relative`.
     """
 
-    def __init__(self, model: Model, quantities: Sequence[str] = QUANTITIES) -> None:
+    def __init__(self, model: Model, quantities: Sequence[str] = QUANTITIES, name: str = "", version: str = "") -> None:
         """Prepare to compare these quantities."""
+        self.name, self.version = name, version
         self.quantities = tuple(key for key in QUANTITIES if key in quantities)
-        self.rows = [Row(*labels) for labels in _labels(model) if labels[0] in self.quantities]
+        self.rows = tuple(Row(*labels) for labels in _labels(model) if labels[0] in self.quantities)
         self.whole = {quantity: Worst() for quantity in self.quantities}
         self._carriers = carriers(model)
+
+    @property
+    def passed(self) -> bool:
+        """Whether every state of every row lies within the tolerance."""
+        return all(row.passed for row in self.rows)
+
+    def to_dict(self) -> dict[str, Any]:
+        """By quantity and place, the worst and where."""
+        quantities: dict[str, dict[str, Any]] = {}
+        for row in self.rows:
+            quantities.setdefault(row.quantity, {})[row.at] = asdict(row) | {"passed": row.passed}
+        farthest = farthest_of(self.rows)
+        worst = {"quantity": farthest.quantity, "at": farthest.at} | asdict(farthest.of_tolerance)
+        normwise = {quantity: asdict(largest) for quantity, largest in self.whole.items()}
+        names = {"reference": f"{self.name} {self.version}".rstrip(), "passed": self.passed}
+        return {**names, "worst": worst, "normwise_eps": normwise, "quantities": quantities}
 
     def add(self, batch: Batch, subject: Evaluation, reference: Evaluation) -> Array:
         """Take in the results of consecutive states; return the largest error / tolerance of each state, (N,)."""
@@ -191,6 +211,11 @@ class Comparison:
         for column, parts in enumerate(self._carriers):
             sizes[:, column] += sum(weight * norm(vectors[key][:, link]) for weight, key, link in parts)
         return sizes
+
+
+def farthest_of(rows: Iterable[Row]) -> Row:
+    """The row that comes closest to its tolerance, or lies furthest beyond."""
+    return max(rows, key=lambda row: row.of_tolerance.value)
 
 
 def with_allowance(batch: Batch, evaluation: Evaluation) -> Evaluation:

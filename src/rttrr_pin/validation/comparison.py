@@ -60,7 +60,8 @@ class Run:
         programs = (judged, *references)
         comparisons = []
         for other in references:
-            comparisons.append(Comparison(model, [key for key in judged.quantities if key in other.quantities]))
+            shared = [key for key in judged.quantities if key in other.quantities]
+            comparisons.append(Comparison(model, shared, other.name, other.version))
             if not comparisons[-1].rows:
                 raise InputError(
                     f"{judged.name} gives {', '.join(judged.quantities)}, and {other.name} gives "

@@ -15,50 +15,13 @@ from rttrr_pin.exact import Adjudication
 from rttrr_pin.implementations import Implementation, label
 from rttrr_pin.implementations.registry import Source
 from rttrr_pin.robot import Robot
-from rttrr_pin.validation.compare import Row, Worst
+from rttrr_pin.validation.compare import Comparison, Row, Worst, farthest_of
 from rttrr_pin.validation.comparison import References, Run
 from rttrr_pin.validation.sampling import Payload
 from rttrr_pin.validation.states import Progress, check_count, described
 from rttrr_pin.version import __version__
 
 TOLERANCE = "|subject - reference| <= allowance of the subject + allowance of the reference (docs/tolerance.md)"
-
-
-@dataclass(frozen=True, slots=True)
-class ReferenceSummary:
-    """What was seen of one reference.
-
-    Attributes:
-        name: of the program.
-        version: of it.
-        rows: what was seen of each quantity at each link or joint.
-        whole: by quantity, the largest relative error in eps, in the norm over all links or joints.
-    """
-
-    name: str
-    version: str
-    rows: tuple[Row, ...]
-    whole: dict[str, Worst]
-
-    @property
-    def passed(self) -> bool:
-        """Whether every state of every row lies within the tolerance."""
-        return all(row.passed for row in self.rows)
-
-    @property
-    def worst(self) -> Row:
-        """The row that comes closest to its tolerance, or lies furthest beyond."""
-        return max(self.rows, key=lambda row: row.of_tolerance.value)
-
-    def to_dict(self) -> dict[str, Any]:
-        """By quantity and place, the worst and where."""
-        quantities: dict[str, dict[str, Any]] = {}
-        for row in self.rows:
-            quantities.setdefault(row.quantity, {})[row.at] = asdict(row) | {"passed": row.passed}
-        worst = {key: getattr(self.worst, key) for key in ("quantity", "at")} | asdict(self.worst.of_tolerance)
-        normwise = {quantity: asdict(largest) for quantity, largest in self.whole.items()}
-        names = {"reference": f"{self.name} {self.version}".rstrip(), "passed": self.passed}
-        return {**names, "worst": worst, "normwise_eps": normwise, "quantities": quantities}
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,7 +53,7 @@ class Validation:
     gravity: tuple[float, ...]
     effects: dict[str, JointEffects]
     subject: str
-    references: tuple[ReferenceSummary, ...]
+    references: tuple[Comparison, ...]
     n_states: int
     sampling: str
     seed: int
@@ -128,7 +91,7 @@ class Validation:
     @property
     def worst(self) -> Row:
         """The row that comes closest to its tolerance, or lies furthest beyond."""
-        return max(self.rows, key=lambda row: row.of_tolerance.value)
+        return farthest_of(self.rows)
 
     def summary(self) -> str:
         """The verdict in one sentence."""
@@ -220,10 +183,7 @@ def validate(
         gravity=tuple(robot.model.gravity.tolist()),
         effects={joint.name: joint.effects for joint in robot.model.joints if joint.effects != JointEffects()},
         subject=label(run.subject),
-        references=tuple(
-            ReferenceSummary(reference.name, reference.version, tuple(comparison.rows), comparison.whole)
-            for reference, comparison in zip(run.references, run.comparisons, strict=True)
-        ),
+        references=run.comparisons,
         n_states=run.states.count(n_states),
         sampling=run.states.sampling,
         seed=seed,

@@ -147,7 +147,7 @@ class Sampler:
         """
         if not isinstance(sampling, str) or sampling not in SAMPLINGS:
             raise UnknownNameError("sampling", sampling, SAMPLINGS)
-        seed = whole_number("seed", seed, 0, 2**128 - 1, "2^128 - 1")
+        seed = whole_number("seed", seed, 0, 2**128 - 1, "2^128 - 1", "--seed")
         self.model, self.sampling, self.seed = model, sampling, seed
         self.payload = load_of(model, payload) if isinstance(payload, Wrench) else payload
         if isinstance(self.payload, Load):
@@ -163,7 +163,7 @@ class Sampler:
 
     def draw(self, first: int, count: int) -> Batch:
         """The states first, first + 1, ..., first + count - 1."""
-        whole_number("state", first, 0, LAST_STATE, "10^15")
+        whole_number("state", first, 0, LAST_STATE, "10^15", "--index")
         counters = -(-self.numbers // PER_COUNTER)  # whole ones for each state, so that state k begins at one
         generator = np.random.Generator(np.random.Philox(key=self.seed, counter=first * counters))
         return self.made_of(generator.random((count, counters * PER_COUNTER)), first)
@@ -179,15 +179,7 @@ class Sampler:
         k = first + np.arange(len(unit), dtype=np.int64)
         q, v, a = SAMPLINGS[self.sampling](unit[:, : 3 * nv], k, self._ranges)
         loads = self._loads(2 * unit[:, 3 * nv : 3 * nv + 6] - 1)
-        return Batch(self.model, self._coordinates(q), v, a, loads, first)
-
-    def _coordinates(self, q: Array) -> Array:
-        """One number for each degree of freedom as the joints' coordinates."""
-        columns, at = [], 0
-        for joint in self.model.moving:
-            columns.append(joint.type.coordinates_at(q[:, at : at + joint.nv]))
-            at += joint.nv
-        return np.hstack(columns) if columns else q
+        return Batch(self.model, self.model.coordinates_at(q), v, a, loads, first)
 
     def _loads(self, unit: Array) -> tuple[Load, ...]:
         if self.payload is None:

@@ -98,7 +98,7 @@ def search_worst_state(
         InputError: an argument cannot be used.
         ImplementationError: as in `validate`.
     """
-    whole_number("evaluations", evaluations, FEWEST, MOST, "10^9")
+    whole_number("evaluations", evaluations, FEWEST, MOST, "10^9", "--evaluations")
     run = Run.of(robot, subject, reference, seed, "uniform", payload)
     if run.states.table is not None:
         raise InputError("a table of results has its own states, and a search makes new ones: name a program")

@@ -143,10 +143,10 @@ def compare_state(
         InputError: an argument cannot be used.
         ImplementationError: as in `validate`.
     """
-    whole_number("state", index, 0, LAST_STATE, "10^15")
+    whole_number("state", index, 0, LAST_STATE, "10^15", "--index")
     run = Run.of(robot, subject, reference, seed, sampling, payload)
     if run.states.table is not None:
-        whole_number("state", index, 0, len(run.states.table) - 1)
+        whole_number("state", index, 0, len(run.states.table) - 1, option="--index")
     batch = run.states.batch(index, 1)
     results = run.evaluate(batch)
     seen = zip(run.references, results[1:], run.comparisons, run.differences(batch, results), strict=True)
@@ -161,7 +161,7 @@ def compare_state(
         subject=label(run.subject),
         result=results[0],
         comparisons=tuple(
-            StateComparison(label(program), result, tuple(comparison.rows), tuple(differences))
+            StateComparison(label(program), result, comparison.rows, tuple(differences))
             for program, result, comparison, differences in seen
         ),
         adjudication=run.adjudicate(batch, results),

@@ -90,7 +90,7 @@ def described(payload: Payload) -> str:
 
 def check_count(n_states: int) -> None:
     """A run has at least one state: none would prove nothing."""
-    whole_number("n_states", n_states, 1, LAST_STATE, "10^15, since none would prove nothing")
+    whole_number("n_states", n_states, 1, LAST_STATE, "10^15, since none would prove nothing", "--states")
 
 
 def model_of(robot: Robot, otherwise: str) -> Model:

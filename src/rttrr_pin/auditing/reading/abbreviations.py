@@ -28,16 +28,16 @@ def collected(
         texts: of the equations that only define.
         define: reads one, with the abbreviations so far; None where it defines none.
     """
-    found: dict[Name, Group] = {}
+    groups: dict[Name, Group] = {}
     sizes: dict[str, int] = {}
     for text in texts:
-        defined = define(text, found)
-        if defined is not None and defined[0] not in found:
+        defined = define(text, groups)
+        if defined is not None and defined[0] not in groups:
             name, group = defined
             size = _size(group.products, sizes)
             if size <= MOST_FACTORS:
-                found[name], sizes[group.abbreviated] = group, size
-    return found
+                groups[name], sizes[group.abbreviated] = group, size
+    return groups
 
 
 def _size(products: Sequence[Product], sizes: Mapping[str, int]) -> int:

@@ -188,11 +188,11 @@ def _angle(group: Group, vocabulary: Vocabulary) -> Multiples | None:
 
 def _named(factors: Factors, vocabulary: Vocabulary) -> Iterator[Factor]:
     """The factors with symbols by name; a sine or cosine and its angle are one."""
-    places = iter(range(len(factors)))
-    for i in places:
+    positions = iter(range(len(factors)))
+    for i in positions:
         factor = factors[i]
         if _takes_argument(factors, i, vocabulary):
-            yield _function(factor, factors[next(places)], vocabulary)
+            yield _function(factor, factors[next(positions)], vocabulary)
         elif (atom := factor.atom) is not None:
             yield replace(factor, body=_symbol(atom, factor.start, vocabulary))
         else:

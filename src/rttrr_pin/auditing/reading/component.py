@@ -35,11 +35,11 @@ def printed_component(products: Callable[[], Sequence[Product]], part: str, text
     printed = " ".join(part.split())
     try:
         check_length(part)
-        found = products()
+        read_products = products()
         try:
-            return PrintedComponent(printed, terms_of(found, text, ways))
+            return PrintedComponent(printed, terms_of(read_products, text, ways))
         except DividesError:
-            return PrintedComponent(printed, (), quotient=quotient_of(found, ways))
+            return PrintedComponent(printed, (), quotient=quotient_of(read_products, ways))
     except UnreadableError as error:
         return PrintedComponent(printed, (), error.placed(text))
     except (RecursionError, MemoryError):

@@ -105,10 +105,10 @@ def _guessed(text: str, rows: Sequence[Row], certain: Sequence[int], wanted: int
         if len(divisions) == MOST:
             raise UnreadableError(f"the display can be divided in more than {MOST} ways", start_of(rows[0].tokens[0]))
         starts = tuple(sorted((*certain, *added)))
-        places = " and ".join(
+        beginnings = " and ".join(
             f"{starts.index(i) + 2} begins with row {i + 1}, `{_beginning(text, rows[i])}`" for i in added
         )
-        note = f"the boundary is not printed: component {places}"
+        note = f"the boundary is not printed: component {beginnings}"
         if any(rows[i - 1].open_end for i in added):
             note += "; the sign at the end of the row before it left out"
         divisions.append((starts, note))

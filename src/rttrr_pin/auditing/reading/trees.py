@@ -136,9 +136,9 @@ def _word(tree: Tree[Token]) -> Atom:
 
 def _scripted(factor: Factor, script: Node) -> Factor:
     children = script.children if isinstance(script, Tree) else [script]
-    kind = _rule(children[0])
-    below = kind in ("SUB_DIGIT", "UNDERSCORE")
-    mark = {"TRANSPOSE": "T", "PRIME": "'"}.get(kind) or spelled(children[-1])
+    rule = _rule(children[0])
+    below = rule in ("SUB_DIGIT", "UNDERSCORE")
+    mark = {"TRANSPOSE": "T", "PRIME": "'"}.get(rule) or spelled(children[-1])
     mark = mark.removeprefix("_" if below else "^").strip()
     body = factor.body
     if below:

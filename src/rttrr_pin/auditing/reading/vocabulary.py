@@ -140,14 +140,14 @@ class Vocabulary:
     def _multiples(self, subscript: str) -> Multiples:
         """The angle of an index: digits, numbers or coordinates, each once, with signs or commas between them."""
         if subscript.isdecimal():
-            found: list[tuple[int, int | None]] = [(1, int(digit)) for digit in subscript]
+            terms: list[tuple[int, int | None]] = [(1, int(digit)) for digit in subscript]
         else:
             parts = re.findall(r"(,?[+-]?)([^+,-]+)", subscript)
             if "".join(sign + part for sign, part in parts) != subscript or len(parts) > LARGEST_MULTIPLE:
                 return {}
-            found = [(-1 if sign.endswith("-") else 1, self._index(part)) for sign, part in parts]
-        indices = {index: sign for sign, index in found if index is not None}
-        return indices if len(indices) == len(found) else {}
+            terms = [(-1 if sign.endswith("-") else 1, self._index(part)) for sign, part in parts]
+        indices = {index: sign for sign, index in terms if index is not None}
+        return indices if len(indices) == len(terms) else {}
 
     def _index(self, text: str) -> int | None:
         if text.isdecimal():

@@ -160,8 +160,8 @@ def link_numpy() -> None:
         ("PyCapsule_GetPointer", ctypes.pythonapi)
     )
     table = get(import_module("numpy._core._multiarray_umath")._ARRAY_API, None)
-    for name, place in NUMPY_API.items():
-        llvm.add_symbol(name, table[place])
+    for name, entry in NUMPY_API.items():
+        llvm.add_symbol(name, table[entry])
 
 
 def python_function(address: int) -> One | None:
@@ -185,8 +185,8 @@ class LlvmExecutable:
 
     def __init__(self, engine: llvm.ExecutionEngine) -> None:
         self._engine = engine
-        kind = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64)
-        self._run = kind(engine.get_function_address("run"))
+        signature = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64)
+        self._run = signature(engine.get_function_address("run"))
         self.one = python_function(engine.get_function_address("one"))
 
     def __del__(self) -> None:

@@ -33,13 +33,13 @@ def body(program: Program, layout: Layout) -> tuple[str, int]:
 def _fill(program: Program, layout: Layout) -> Iterator[str]:
     """The function `void fill(ptr out, i64 m)`: what no state changes, written once for all blocks."""
     graph = program.graph
-    still = [(place, x) for place, x in enumerate(program.results) if graph.op[x] is Op.CONSTANT]
+    still = [(column, x) for column, x in enumerate(program.results) if graph.op[x] is Op.CONSTANT]
     parts = [still[start : start + SEGMENT] for start in range(0, len(still), SEGMENT)]
     for k, part in enumerate(parts):
         lines = Lines(layout.lanes)
-        for place, x in part:
+        for column, x in part:
             value = lines.splat(graph.value[x])
-            lines.do(f"store {lines.vector} {value}, ptr {lines.at('%o', place * layout.pitch)}")
+            lines.do(f"store {lines.vector} {value}, ptr {lines.at('%o', column * layout.pitch)}")
         yield _loop(f"fill_{k}", lines, "loop")
     calls = "\n".join(f"  call void @fill_{k}(ptr %out, ptr %out, ptr %out, i64 %m)" for k in range(len(parts)))
     yield f"define void @fill(ptr %out, i64 %m) noinline {{\n{calls}\n  ret void\n}}\n"
@@ -58,6 +58,7 @@ def _segments(program: Program) -> list[list[int]]:
 def _angles_together(program: Program, parts: list[list[int]]) -> list[list[int]]:
     """Sine and cosine of one angle are computed at once: both stand where the first of them stands."""
     op, args = program.graph.op, program.graph.args
+    # They share the reduction of the angle, and `VectorCode` computes both in one go within a segment only.
     first: dict[int, int] = {}
     moved: list[list[int]] = [[] for _ in parts]
     for k, part in enumerate(parts):
@@ -91,9 +92,9 @@ def _segment(program: Program, layout: Layout, k: int, part: list[int], passed: 
     results = list(enumerate(program.results))
     inside = set(part)
     first = k == 0
-    for place, x in results:
+    for column, x in results:
         if x in inside or (first and program.graph.op[x] is Op.INPUT):
-            lines.do(f"store {lines.vector} {writer.get(x)}, ptr {lines.at('%o', place * layout.pitch)}")
+            lines.do(f"store {lines.vector} {writer.get(x)}, ptr {lines.at('%o', column * layout.pitch)}")
     return _loop(f"segment_{k}", lines, writer.label)
 
 

@@ -54,13 +54,13 @@ class _StepCode(VectorCode):
 
     step: Step | None = None
 
-    def read(self, place: int) -> str:
+    def read(self, index: int) -> str:
         """The vector of a column, or a number in all lanes."""
         assert self.step is not None
         lines, v = self.lines, self.lines.vector
-        if place in self.step.columns:
-            return lines(f"load {v}, ptr {self.address(self.step.columns.index(place))}, align 8")
-        x = lines(f"load double, ptr {lines.at('%numbers', self.step.numbers.index(place))}")
+        if index in self.step.columns:
+            return lines(f"load {v}, ptr {self.address(self.step.columns.index(index))}, align 8")
+        x = lines(f"load double, ptr {lines.at('%numbers', self.step.numbers.index(index))}")
         first = lines(f"insertelement {v} poison, double {x}, i32 0")
         return lines(f"shufflevector {v} {first}, {v} poison, <{lines.lanes} x i32> zeroinitializer")
 
@@ -78,6 +78,7 @@ def _step(step: Step, layout: Layout, k: int) -> str:
     for x in program.order:
         if program.graph.op[x] not in LEAVES:
             code.compute(x)
+    # A result may be an argument that is handed on: `get` loads it here, before a store can overwrite its column.
     values = [code.get(x) for x in program.results]
     for entry, value in enumerate(values, len(step.columns)):
         lines.do(f"store {lines.vector} {value}, ptr {code.address(entry)}, align 8")
@@ -87,8 +88,8 @@ def _step(step: Step, layout: Layout, k: int) -> str:
 
 def _body(call_program: CallProgram) -> str:
     """The loop over the rows of the table."""
-    kinds = range(len(call_program.steps))
-    cases = " ".join(f"i32 {k}, label %case_{k}" for k in kinds)
+    steps = range(len(call_program.steps))
+    cases = " ".join(f"i32 {k}, label %case_{k}" for k in steps)
     parts = []
     for k, step in enumerate(call_program.steps):
         entries = 1 + len(step.columns) + len(step.program.results)
@@ -98,8 +99,8 @@ def _body(call_program: CallProgram) -> str:
   %row_{k} = getelementptr i32, ptr %row, i64 {entries}
   %number_{k} = getelementptr double, ptr %number, i64 {len(step.numbers)}
   br label %loop""")
-    rows = ", ".join(["[ @rows, %start ]", *(f"[ %row_{k}, %case_{k} ]" for k in kinds)])
-    numbers = ", ".join(["[ @numbers, %start ]", *(f"[ %number_{k}, %case_{k} ]" for k in kinds)])
+    rows = ", ".join(["[ @rows, %start ]", *(f"[ %row_{k}, %case_{k} ]" for k in steps)])
+    numbers = ", ".join(["[ @numbers, %start ]", *(f"[ %number_{k}, %case_{k} ]" for k in steps)])
     text = "\n".join(parts)
     return f"""define void @body(ptr %in, ptr %out, ptr %between, i64 %m) noinline {{
 start:

@@ -39,9 +39,9 @@ class Writer:
         by = number(bytes_) if isinstance(bytes_, int) else bytes_
         return self.builder.gep(base, [by], source_etype=ir.IntType(8))
 
-    def load(self, kind: ir.Type, address: ir.Value, align: int | None = None) -> ir.Value:
+    def load(self, ir_type: ir.Type, address: ir.Value, align: int | None = None) -> ir.Value:
         """What stands at an address."""
-        return self.builder.load(address, typ=kind, align=align)
+        return self.builder.load(address, typ=ir_type, align=align)
 
     def store(self, value: ir.Value, address: ir.Value, align: int | None = None) -> None:
         """Write to an address."""
@@ -64,9 +64,9 @@ class Writer:
         b.branch(first)
         b.position_at_end(after)
 
-    def memory(self, kind: ir.Type, count: int = 1) -> ir.Value:
+    def memory(self, ir_type: ir.Type, count: int = 1) -> ir.Value:
         """Memory of this function's own, on a cache line."""
-        memory = self.builder.alloca(kind, count)
+        memory = self.builder.alloca(ir_type, count)
         memory.align = LINE
         return untyped(memory)
 
@@ -97,19 +97,21 @@ def function(
     return function, Writer(ir.IRBuilder(function.append_basic_block("start")))
 
 
-def pack(module: ir.Module, layout: Layout, kind: ir.Type) -> ir.Function:
+def pack(module: ir.Module, layout: Layout, ir_type: ir.Type) -> ir.Function:
     """Gather m states of an array into columns; lanes beyond m repeat the last state."""
-    name = "pack_f64" if kind is F64 else "pack_f32"
-    made, w = function(module, name, ir.VoidType(), [PTR, I64, I64, I64, PTR, I64])
-    source, row, column, count, target, m = made.args
+    name = "pack_f64" if ir_type is F64 else "pack_f32"
+    routine, w = function(module, name, ir.VoidType(), [PTR, I64, I64, I64, PTR, I64])
+    source, row, column, count, target, m = routine.args
     b, W, pitch = w.builder, layout.lanes, number(layout.pitch * 8)
-    if kind is F64:
+    if ir_type is F64:
         _copy_columns(w, layout, (source, column), (target, pitch), (row, count, m))
     last = b.sub(m, number(1))
     with w.loop(m, W) as i:
+        # Beyond the last state the last one is repeated: whole vectors need no code of their own for the rest, and a
+        # state that is there raises no NaN that is not its own.
         rows = [w.offset(source, b.mul(w.least(b.add(i, number(k)), last), row)) for k in range(W)]
         to = w.offset(target, b.shl(i, number(3)))
-        squares = _squares(b, layout, column, count) if kind is F64 else number(0)
+        squares = _squares(b, layout, column, count) if ir_type is F64 else number(0)
         with w.loop(squares, W) as j:
             at = b.shl(j, number(3))
             for k, x in enumerate(_transposed(b, [w.load(_vector(layout), w.offset(x, at), 8) for x in rows])):
@@ -118,20 +120,20 @@ def pack(module: ir.Module, layout: Layout, kind: ir.Type) -> ir.Function:
             at = b.mul(j, column)
             value: ir.Value = ir.Constant(_vector(layout), ir.Undefined)
             for k, x in enumerate(rows):
-                item = w.load(kind, w.offset(x, at), 1)
-                value = b.insert_element(value, item if kind is F64 else b.fpext(item, F64), ir.Constant(I32, k))
+                item = w.load(ir_type, w.offset(x, at), 1)
+                value = b.insert_element(value, item if ir_type is F64 else b.fpext(item, F64), ir.Constant(I32, k))
             w.store(value, w.offset(to, b.mul(j, pitch)), 8)
     b.ret_void()
-    return made
+    return routine
 
 
 def unpack(module: ir.Module, layout: Layout) -> ir.Function:
     """Scatter m states from columns into an array."""
-    made, w = function(module, "unpack_f64", ir.VoidType(), [PTR, I64, I64, I64, PTR, I64])
-    target, row, column, count, source, m = made.args
+    routine, w = function(module, "unpack_f64", ir.VoidType(), [PTR, I64, I64, I64, PTR, I64])
+    target, row, column, count, source, m = routine.args
     b, W, pitch = w.builder, layout.lanes, number(layout.pitch * 8)
     _copy_columns(w, layout, (source, pitch), (target, column), (row, count, m))
-    full = b.and_(m, number(-W))
+    full = b.and_(m, number(-W))  # the array has no room for repeated states: what fills no vector goes one by one
     squares = _squares(b, layout, column, count)
     with w.loop(full, W) as i:
         rows = [w.offset(target, b.mul(b.add(i, number(k)), row)) for k in range(W)]
@@ -151,7 +153,7 @@ def unpack(module: ir.Module, layout: Layout) -> ir.Function:
         with w.loop(count) as j:
             w.store(w.load(F64, w.offset(origin, b.mul(j, pitch))), w.offset(to, b.mul(j, column)), 1)
     b.ret_void()
-    return made
+    return routine
 
 
 def _vector(layout: Layout) -> ir.Type:
@@ -201,19 +203,20 @@ def _transposed(b: ir.IRBuilder, rows: list[ir.Value]) -> list[ir.Value]:
 
 def unsound(module: ir.Module, layout: Layout) -> ir.Function:
     """Whether m states have a number that is not finite: 0 x is 0 but for those, where it is NaN."""
-    made, w = function(module, "unsound", I1, [PTR, I64, I64])
-    source, count, m = made.args
+    routine, w = function(module, "unsound", I1, [PTR, I64, I64])
+    source, count, m = routine.args
     b, W = w.builder, layout.lanes
     zero = ir.Constant(_vector(layout), [0.0] * W)
     integers = ir.VectorType(I64, W)
-    found = w.memory(integers)
-    w.store(ir.Constant(integers, [0] * W), found)
+    unsound_lanes = w.memory(integers)
+    w.store(ir.Constant(integers, [0] * W), unsound_lanes)
     with w.loop(count) as j:
         column = w.offset(source, b.mul(j, number(layout.pitch * 8)))
         with w.loop(m, W) as i:
             product = b.fmul(w.load(_vector(layout), w.offset(column, b.shl(i, number(3))), 8), zero)
             bad = b.sext(b.fcmp_unordered("uno", product, zero), integers)
-            w.store(b.or_(w.load(integers, found), bad), found)
-    none = b.icmp_signed("==", w.load(integers, found), ir.Constant(integers, [0] * W))
+            w.store(b.or_(w.load(integers, unsound_lanes), bad), unsound_lanes)
+    # Looked at once, behind the loops: a branch in each would cost more than the products.
+    none = b.icmp_signed("==", w.load(integers, unsound_lanes), ir.Constant(integers, [0] * W))
     b.ret(b.icmp_unsigned("!=", b.bitcast(none, ir.IntType(W)), ir.Constant(ir.IntType(W), -1)))
-    return made
+    return routine

@@ -61,7 +61,7 @@ class _Driver:
         self.fill = ir.Function(module, ir.FunctionType(VOID, [PTR, I64]), "fill")
         self.malloc = ir.Function(module, ir.FunctionType(PTR, [I64]), "malloc")
         self.free = ir.Function(module, ir.FunctionType(VOID, [PTR]), "free")
-        self.pack = {kind: pack(module, layout, kind) for kind in (F64, F32)}
+        self.pack = {ir_type: pack(module, layout, ir_type) for ir_type in (F64, F32)}
         self.unpack = unpack(module, layout)
         self.unsound = unsound(module, layout)
         self.function, self.w = function(module, "run", I64, [PTR, I64, I64], internal=False)
@@ -119,10 +119,11 @@ class _Driver:
                 with float64:
                     b.call(self.pack[F64], arguments)
         padded = self._padded(m)
+        # All is read before the first result is written: outputs may lie over inputs of the same block.
         b.call(self.body, [inputs, outputs, between, padded])
         bad = b.call(self.unsound, [outputs, number(program.width_out), padded])
-        for place, length in _runs(program.unread):
-            column = self.w.offset(inputs, place * self.layout.pitch * 8)
+        for first, length in _runs(program.unread):  # NaN there would reach no result, and is an error all the same
+            column = self.w.offset(inputs, first * self.layout.pitch * 8)
             bad = b.or_(bad, b.call(self.unsound, [column, number(length), padded]))
         for (base, row, column, _), field, at in self._placed(arrays[count:], program.outputs, outputs):
             b.call(self.unpack, [base, row, column, number(field.width), at, m])
@@ -143,8 +144,8 @@ class _Driver:
             before += field.width
 
 
-def _runs(places: Sequence[int]) -> Iterator[tuple[int, int]]:
+def _runs(indices: Sequence[int]) -> Iterator[tuple[int, int]]:
     """Places one behind the other, as the first and their count."""
-    for _, run in groupby(enumerate(places), lambda pair: pair[1] - pair[0]):
-        together = [place for _, place in run]
+    for _, run in groupby(enumerate(indices), lambda pair: pair[1] - pair[0]):
+        together = [index for _, index in run]
         yield together[0], len(together)

@@ -162,9 +162,9 @@ class _One:
     def _fill(self, item: ir.Value, view: ir.Value, flags: int) -> None:
         """The buffer of an array of float64; of a subclass, masked arrays among them, Python code decides."""
         w, b = self.w, self.w.builder
-        kind = b.call(self.api["PyObject_Type"], [item])
-        b.call(self.api["Py_DecRef"], [kind])
-        w.require(b.icmp_unsigned("==", kind, self.ndarray), self.decline)
+        cls = b.call(self.api["PyObject_Type"], [item])
+        b.call(self.api["Py_DecRef"], [cls])
+        w.require(b.icmp_unsigned("==", cls, self.ndarray), self.decline)
         filled = b.call(self.api["PyObject_GetBuffer"], [item, view, ir.Constant(I32, flags)])
         with b.if_then(b.icmp_signed("!=", filled, ir.Constant(I32, 0)), likely=False):
             b.call(self.api["PyErr_Clear"], [])
@@ -193,8 +193,8 @@ class _One:
         w.require(b.icmp_signed("==", b.select(several, w.load(I64, shape), m), m), self.decline)
         first = b.shl(batched, number(3))  # of the axes of a state, in bytes
         for axis, length in enumerate(field.shape):
-            found = w.load(I64, w.offset(w.offset(shape, first), 8 * axis))
-            w.require(b.icmp_signed("==", found, number(length)), self.decline)
+            size = w.load(I64, w.offset(w.offset(shape, first), 8 * axis))
+            w.require(b.icmp_signed("==", size, number(length)), self.decline)
         data, row = w.load(PTR, w.offset(view, VIEW["data"])), number(8 * field.width)
         if output:
             return data, row, number(8)
@@ -227,7 +227,7 @@ class _One:
 
 def python_entry(module: ir.Module, program: Program | CallProgram, layout: Layout, run: ir.Function) -> None:
     """The function `one` of a program whose states `run` computes."""
-    api = {name: ir.Function(module, kind, name) for name, kind in FUNCTIONS.items()}
+    api = {name: ir.Function(module, signature, name) for name, signature in FUNCTIONS.items()}
     none, ndarray = (untyped(ir.GlobalVariable(module, I64, name)) for name in ("_Py_NoneStruct", "PyArray_Type"))
     one, w = function(module, "one", PTR, [PTR, PTR, I64], internal=False)
     _One(w, program, layout, run, api, none, ndarray, one.append_basic_block("finish")).write()

@@ -151,9 +151,9 @@ class VectorCode:
         self.value[x] = self.read(graph.args[x][0]) if graph.op[x] is Op.INPUT else self.column("%b", self.passed[x])
         return self.value[x]
 
-    def read(self, place: int) -> str:
+    def read(self, index: int) -> str:
         """The vector of an input."""
-        return self.column("%q", place)
+        return self.column("%q", index)
 
     def column(self, base: str, column: int) -> str:
         """The vector at the present states of a column."""
@@ -200,6 +200,8 @@ class VectorCode:
         beyond = lines(f"fcmp ugt {lines.vector} {size}, {lines.splat(LARGEST)}")  # also NaN
         some = lines(f"bitcast <{lines.lanes} x i1> {beyond} to i{lines.lanes}")
         any_ = lines(f"icmp ne i{lines.lanes} {some}, 0")
+        # The polynomials are computed in any case; the calls are skipped where no lane needs them, as for the angles of
+        # any robot. Values of both ways meet in a phi, which must name the blocks that they come from.
         n, before = lines.count, self.label
         lines.do(f"br i1 {any_}, label %far{n}, label %near{n}")
         lines.text.append(f"far{n}:")
@@ -227,6 +229,7 @@ class VectorCode:
 def polynomials(lines: Lines, q: str) -> tuple[str, str]:
     """Sine and cosine for |q| up to LARGEST; see `rttrr_pin.compile.sincos`."""
     splat, fma, op, bits = lines.splat, lines.fma, lines.op, lines.bits
+    # Adding 1.5 2^52 rounds to an integer, whose last bits then are the quadrant: no conversion, and no branch.
     shifted = fma(q, splat(TWO_OVER_PI), splat(ROUND))
     k = op("fsub", splat(ROUND), shifted)  # minus the multiple of pi/2
     t = fma(k, splat(PIO2[0]), q)
@@ -246,6 +249,7 @@ def polynomials(lines: Lines, q: str) -> tuple[str, str]:
     quadrant = lines(f"bitcast {lines.vector} {shifted} to {lines.integers}")
     odd = lines(f"icmp slt {lines.integers} {bits('shl', quadrant, lines.whole(63))}, {lines.whole(0)}")
     mask, v = f"<{lines.lanes} x i1>", lines.vector
+    # Odd quadrants exchange sine and cosine; the second bit of k, of k + 1 for the cosine, is the sign.
     flips = [
         bits("shl", bits("lshr", n, lines.whole(1)), lines.whole(63))
         for n in (quadrant, bits("add", quadrant, lines.whole(1)))

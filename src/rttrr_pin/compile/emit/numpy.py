@@ -78,17 +78,17 @@ def _of_calls(call_program: CallProgram) -> Iterator[str]:
     """A function for each step, the calls as data, and a function that goes through them."""
     for k, step in enumerate(call_program.steps):
         yield from _straight(f"step_{k}", step.program)
-    places = [(step.columns, step.numbers) for step in call_program.steps]
+    layouts = [(step.columns, step.numbers) for step in call_program.steps]
     first, last = call_program.width_in, call_program.width_in + call_program.width_out
-    yield f"steps = [{', '.join(f'step_{k}' for k in range(len(places)))}]"
-    yield f"places = {places!r}"
+    yield f"steps = [{', '.join(f'step_{k}' for k in range(len(layouts)))}]"
+    yield f"layouts = {layouts!r}"
     yield f"calls = {[(call.step, call.columns, call.numbers, call.results) for call in call_program.calls]!r}"
     yield "def program(x):"
     yield f"    memory = x + [None] * {call_program.columns - first}"
     yield "    for k, columns, numbers, results in calls:"
-    yield "        given = dict(zip(places[k][1], numbers))"
-    yield "        given.update((place, memory[column]) for place, column in zip(places[k][0], columns))"
-    yield "        for column, result in zip(results, steps[k](given)):"
+    yield "        inputs = dict(zip(layouts[k][1], numbers))"
+    yield "        inputs.update((place, memory[column]) for place, column in zip(layouts[k][0], columns))"
+    yield "        for column, result in zip(results, steps[k](inputs)):"
     yield "            memory[column] = result"
     yield f"    return memory[{first}:{last}]"
 

@@ -10,23 +10,8 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.derivation import Derivation, Symbol
 from rttrr_pin.derivation.motion import Angle, angles
 from rttrr_pin.derivation.symbolic_robot import AXES, Slot
-from rttrr_pin.derivation.symbols import ACCELERATION, FORCE, INERTIA, LENGTH, MASS, MOMENT, NUMBER, Dimension, Role
+from rttrr_pin.derivation.symbols import Role
 from rttrr_pin.derivation.writers.wording import plain
-
-UNITS: dict[Dimension, str] = {
-    NUMBER: "1",
-    LENGTH: "m",
-    MASS: "kg",
-    INERTIA: "kg m^2",
-    ACCELERATION: "m/s^2",
-    FORCE: "N",
-    MOMENT: "N m",
-    Dimension(time=-1): "rad/s",
-    Dimension(time=-2): "rad/s^2",
-    Dimension(length=1, time=-1): "m/s",
-}
-"""What people write for a dimension."""
-
 
 MEANINGS = {
     "mass": "mass of {link}",
@@ -66,7 +51,7 @@ def glossary(derivation: Derivation) -> list[Entry]:
     used = {name for terms in derivation.all_terms() for factors in terms for name, _ in factors}
     for angle in angles(model):  # in the table an angle stands as its coordinate, or, of a follower, by its sine
         if {f"s_{angle.suffix}", f"c_{angle.suffix}"} & used:
-            used |= {f"q_{angle.place}", f"s_{angle.suffix}"}
+            used |= {f"q_{angle.index}", f"s_{angle.suffix}"}
     moving = [symbol for role in MOVING for symbol in derivation.robot.motion if symbol.role is role]
     entries = [_of_motion(model, symbol) for symbol in moving]
     entries += [_of_angle(model, angle) for angle in angles(model) if angle.suffix.startswith("j")]
@@ -86,30 +71,27 @@ def parameters(derivation: Derivation, payload: bool = False) -> Iterator[Entry]
             if sign:
                 minus = "minus " if sign < 0 and slot[0] != "gravity" else ""
                 meanings[minus + _meaning(derivation, slot)] = None
-        yield Entry(symbol, ", ".join(meanings), unit(symbol), None if of_payload else named.values[symbol.name])
+        yield Entry(
+            symbol, ", ".join(meanings), symbol.dimension.unit, None if of_payload else named.values[symbol.name]
+        )
 
 
 def payload_places(derivation: Derivation) -> dict[str, tuple[int, int]]:
     """The place in (f_x, f_y, f_z, n_x, n_y, n_z), from 0, of each symbol of the payload, and its sign."""
-    places = {}
+    columns = {}
     for slot, terms in derivation.robot.parameters.slots.items():
         if slot[0] in ("force", "moment"):
             ((((name, _),), sign),) = terms.items()
-            places[name] = (int(slot[1]) + (3 if slot[0] == "moment" else 0), 1 if sign > 0 else -1)
-    return places
+            columns[name] = (int(slot[1]) + (3 if slot[0] == "moment" else 0), 1 if sign > 0 else -1)
+    return columns
 
 
 def _of_angle(model: Model, angle: Angle) -> Entry:
     """The angle of a joint that follows another."""
     joint = angle.suffix[1:]
     symbol = Symbol(f"s_{angle.suffix}", rf"\varphi_{{{joint}}}", Role.SINE)
-    line = f"{angle.multiplier!r} times coordinate {angle.place} plus {angle.offset!r}"
+    line = f"{angle.multiplier!r} times coordinate {angle.index} plus {angle.offset!r}"
     return Entry(symbol, f"angle of {plain(model.joints[int(joint) - 1].name)}: {line}", "rad")
-
-
-def unit(symbol: Symbol) -> str:
-    """The unit of a symbol."""
-    return UNITS.get(symbol.dimension, str(symbol.dimension))
 
 
 def axis_units(model: Model) -> tuple[list[str], list[str]]:
@@ -130,13 +112,13 @@ def _of_motion(model: Model, symbol: Symbol) -> Entry:
     if symbol.role is Role.COORDINATE:
         return Entry(symbol, f"coordinate of {of}", axis_units(model)[0][symbol.index - 1])
     word = {Role.RATE: "rate", Role.ACCELERATION: "acceleration", Role.SIGN: "sign of the rate"}[symbol.role]
-    return Entry(symbol, f"{word} of {of}", unit(symbol))
+    return Entry(symbol, f"{word} of {of}", symbol.dimension.unit)
 
 
 def _meaning(derivation: Derivation, slot: Slot) -> str:
-    model, number, places = derivation.robot.model, str(slot[0]), [int(x) for x in slot[1:]]
-    i = places.pop(0) if number in ("mass", "com", "inertia", "origin") else derivation.robot.payload_link
-    names = {"axes": "".join(AXES[x] for x in sorted(places))}
+    model, number, axes = derivation.robot.model, str(slot[0]), [int(x) for x in slot[1:]]
+    i = axes.pop(0) if number in ("mass", "com", "inertia", "origin") else derivation.robot.payload_link
+    names = {"axes": "".join(AXES[x] for x in sorted(axes))}
     if i is not None:
         parent = model.joints[i].parent
         names["link"], names["joint"] = plain(model.links[i].name), plain(model.joints[i].name)

@@ -64,13 +64,13 @@ def _filled(pieces: Sequence[Piece], notation: Notation, room: float) -> Iterato
     while start < len(pieces):
         indent = notation.indent if pieces[start].depth else ""
         left = room - notation.width(indent) - widths[start]
-        end, places = start + 1, []
+        end, breaks = start + 1, []
         while end < len(pieces) and widths[end] <= left:
             left -= widths[end]
             end += 1
-            places += [end] if left < (1 - FULL) * room else []
-        if end < len(pieces) and places:
-            end = min(places, key=lambda place: (pieces[place].depth, -place))
+            breaks += [end] if left < (1 - FULL) * room else []
+        if end < len(pieces) and breaks:
+            end = min(breaks, key=lambda at: (pieces[at].depth, -at))
         line = "".join(piece.text for piece in pieces[start:end])
         yield indent + line.lstrip()
         start = end

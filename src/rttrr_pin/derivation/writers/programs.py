@@ -123,8 +123,8 @@ class Language:
             case Role.SIGN:
                 return self.sign.format(f"v[{symbol.index - 1}]")
             case Role.PAYLOAD:
-                place, sign = payload_places(derivation)[name]
-                return f"{'-' if sign < 0 else ''}payload[{place}]"
+                column, sign = payload_places(derivation)[name]
+                return f"{'-' if sign < 0 else ''}payload[{column}]"
         return self.parameter.format(name)
 
     def _assignment(self, name: str, value: Sum | str) -> str:
@@ -179,7 +179,7 @@ def _arguments(derivation: Derivation) -> Iterator[Argument]:
 
 def _angle(derivation: Derivation, suffix: str) -> str:
     (angle,) = (angle for angle in angles(derivation.robot.model) if angle.suffix == suffix)
-    coordinate = f"q[{angle.place - 1}]"
+    coordinate = f"q[{angle.index - 1}]"
     if (angle.multiplier, angle.offset) == (1.0, 0.0):
         return coordinate
     return f"{angle.multiplier!r} * {coordinate} + {angle.offset!r}"
