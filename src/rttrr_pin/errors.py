@@ -8,9 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
-from types import MappingProxyType
-
-NO_OPTIONS: Mapping[str, str] = MappingProxyType({})
 
 
 class RttrrError(Exception):
@@ -20,9 +17,9 @@ class RttrrError(Exception):
         options: what the command line has in place of words of the message that name an argument of Python.
     """
 
-    def __init__(self, message: str, options: Mapping[str, str] = NO_OPTIONS) -> None:
+    def __init__(self, message: str, options: Mapping[str, str] | None = None) -> None:
         super().__init__(message)
-        self.options = dict(options)
+        self.options = dict(options or {})
 
     def in_options(self) -> str:
         """The message in the words of the command line."""

@@ -157,13 +157,17 @@ class Comparison:
         """Whether every state of every row lies within the tolerance."""
         return all(row.passed for row in self.rows)
 
+    @property
+    def worst(self) -> Row:
+        """The row that comes closest to its tolerance, or lies furthest beyond."""
+        return farthest_of(self.rows)
+
     def to_dict(self) -> dict[str, Any]:
         """By quantity and place, the worst and where."""
         quantities: dict[str, dict[str, Any]] = {}
         for row in self.rows:
             quantities.setdefault(row.quantity, {})[row.at] = asdict(row) | {"passed": row.passed}
-        farthest = farthest_of(self.rows)
-        worst = {"quantity": farthest.quantity, "at": farthest.at} | asdict(farthest.of_tolerance)
+        worst = {key: getattr(self.worst, key) for key in ("quantity", "at")} | asdict(self.worst.of_tolerance)
         normwise = {quantity: asdict(largest) for quantity, largest in self.whole.items()}
         names = {"reference": f"{self.name} {self.version}".rstrip(), "passed": self.passed}
         return {**names, "worst": worst, "normwise_eps": normwise, "quantities": quantities}
