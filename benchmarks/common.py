@@ -75,11 +75,12 @@ def written(value: Any, indent: int = 0) -> str:
     return left + start + f",{start}".join(pieces) + "\n" + " " * indent + right
 
 
-def finish(name: str, figures: dict[str, Any], save: bool) -> None:
-    """Print the figures, and write them whole if asked to."""
+def finish(name: str, figures: dict[str, Any], save: bool, show: bool = True) -> None:
+    """Print the figures unless a run is still going on, and write them whole if asked to."""
     versions = {package: metadata.version(package) for package in PACKAGES}
     text = written({"benchmark": name, "machine": machine(), "versions": versions, **figures}) + "\n"
-    print(text, end="")
+    if show:
+        print(text, end="")
     if save:
         RESULTS.mkdir(exist_ok=True)
         target = RESULTS / f"{name}.json"

@@ -40,6 +40,7 @@ COMMANDS: dict[str, list[str]] = {
     "audit": ["audit", "--json", "a.json", "--html", "a.html", "--latex", "a.tex", "--markdown", "a.md"],
     "derive": ["derive", "trr", "--latex", "d.tex", "--markdown", "d.md", "--python", "d.py", "--c", "d.c"],
     "inspect": ["inspect", str(ROBOTS / "rttrr.urdf"), "--json", "out.json", "--fix", "fixed.urdf"],
+    "inspect FOLDER": ["inspect", str(ROBOTS), "--json", "out.json", "--sarif", "out.sarif", "--junit", "out.xml"],
     "new": ["new", "RTTRR", "-o", "new.urdf"],
 }
 """What is run, in an empty folder."""

@@ -89,7 +89,8 @@ class UnknownNameError(InputError):
 
     def __init__(self, kind: str, got: object, known: Iterable[str], fix: str = "") -> None:
         self.kind, self.got, self.known = kind, got, tuple(known)
-        super().__init__(f"no {kind} is called {got!r}: {nearest(got, self.known)}{'; ' + fix if fix else ''}")
+        hint = nearest(got, self.known) + (f"; {fix}" if fix else "")
+        super().__init__(f"no {kind} is called {shortened(repr(got))}: {hint}")
 
 
 class MissingJointError(InputError):

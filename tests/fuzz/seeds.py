@@ -54,12 +54,13 @@ SMALL = {
 """Robots that hold what the bundled arms do not: branches, turned inertias, followers, planar and floating joints."""
 
 
-def seeds() -> dict[str, str]:
+def seeds(with_examples: bool = True) -> dict[str, str]:
     """The texts that are damaged: small ones, the bundled arms, and small example robots if they are installed."""
     from rttrr_pin.errors import InputError
     from rttrr_pin.urdf.sources import bundled, examples
 
     files = dict(bundled())
     with suppress(InputError):
-        files |= {f"example:{name}": path for name, path in examples().items() if path.stat().st_size <= LARGEST_SEED}
+        found = examples() if with_examples else {}
+        files |= {f"example:{name}": path for name, path in found.items() if path.stat().st_size <= LARGEST_SEED}
     return SMALL | {name: path.read_text(encoding="utf-8") for name, path in files.items()}

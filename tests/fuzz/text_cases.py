@@ -49,9 +49,8 @@ EXPRESSIONS = (
 TOKENS = ("[", "]", "{", "}", '"', "'''", "=", ",", ".", "\n", "#", "*a", "&a ", "<<: ", "- ", ": ", "!!int ", "|", ">")
 
 
-def case(seed: int, index: int) -> tuple[str, bytes]:
-    """How the file of a number is called at its end, and what is in it."""
-    rng = random.Random(f"texts:{seed}:{index}")
+def text_case(rng: random.Random) -> tuple[str, bytes]:
+    """How a file of equations is called at its end, and what is in it."""
     kind = rng.random()
     if kind < 0.3:
         return _damaged(rng)

@@ -94,6 +94,8 @@ HOSTILE = {
     "garbage": ('print(tau if k < 5 else "tau = 3")', "wrote what is no reply: 'tau = 3' is no JSON"),
     "banner": ('k or print("Loading robot"); print(tau)', "'Loading robot' is no JSON"),
     "too-many-lines": ("print(tau); print(tau)", "wrote more lines than it has read states"),
+    "deep": ('print("[" * 900 + "0" + "]" * 900)', "lists in each other, more than 8 deep"),
+    "many-names": ("print(json.dumps({str(k): 0 for k in range(50000)}))", "returned '0', '1', "),
     "nested": ('print("[" * 100000)', "is no JSON"),
     "too-few": ("print([])", "tau has 0 numbers, expected 1"),
     "too-many": ("print([tau, tau])", "tau has 2 numbers, expected 1"),

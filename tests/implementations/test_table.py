@@ -185,6 +185,9 @@ DAMAGED = {
     "half-a-vector": ("q_pivot,v_pivot,a_pivot,F_rod_x\n0,0,0,0\n", "lacks the columns F_rod_y, F_rod_z"),
     "joint": (HEADER.replace("tau_pivot", "tau_pivto") + "0,0,0,0\n", "did you mean tau_pivot"),
     "infinite-state": (HEADER + "0,0,0,0\n0,inf,0,0\n", "v[1, 0], joint 'pivot', is inf"),
+    "many-times": (",".join(["q_pivot"] * 200_000) + "\n", "has the column 'q_pivot' 200000 times"),
+    "unknown-and-long": ("q_" + "x" * 100_000 + "\n0\n", "no column is called 'q_xxx"),
+    "no-end-of-line": (HEADER + "1" * 4_000_001, "line 2: it has more than 4,000,000 characters"),
     "huge-cell": (HEADER + "0,0,0," + "1" * 200000 + "\n", "field larger than field limit"),
 }
 
@@ -195,6 +198,16 @@ def test_a_damaged_table_names_line_and_column(tmp_path: Path, case: str) -> Non
     with pytest.raises(RttrrError) as caught:
         Table(written(tmp_path, text), pendulum().model)
     assert message in str(caught.value) and "results.csv" in str(caught.value)
+    assert len(str(caught.value)) < 1000
+
+
+@pytest.mark.parametrize("exponent", ["9" * 400, "9" * 5000], ids=len)
+@pytest.mark.parametrize("sign", ["", "-"])
+def test_exponents_of_any_length_are_numbers(tmp_path: Path, sign: str, exponent: str) -> None:
+    """0 and infinity, as float64 has them."""
+    table = Table(written(tmp_path, HEADER + f"0,0,0,0e{sign}{exponent}\n0,0,0,1e{sign}{exponent}\n"), pendulum().model)
+    values = table.evaluate(table.states()).values["tau"].ravel()
+    assert values.tolist() == [0.0, 0.0 if sign else np.inf]
 
 
 @pytest.mark.parametrize(
@@ -208,6 +221,8 @@ def test_a_damaged_table_names_line_and_column(tmp_path: Path, case: str) -> Non
         ('{"q": 0, "v": 0, "a": 0, "f": {"rode": [1, 2, 3]}}', "did you mean rod"),
         ('{"q": null, "v": 0, "a": 0, "tau": 0}', "is nan"),
         ("[1, 2]", "lacks the columns"),
+        ('{}\n{"q": 0, "v": 0, "a": 0, "tau": 0}', "line 2: other quantities"),
+        (f'{{"q": 0, "v": 0, "a": 0, "tau": {"[" * 900}0{"]" * 900}}}', "lists in each other, more than 8 deep"),
     ],
 )
 def test_damaged_json_lines_name_their_line(tmp_path: Path, text: str, message: str) -> None:

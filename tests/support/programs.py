@@ -1,7 +1,8 @@
-"""Programs run by NumPy, operation by operation: slow, and the reference for what compiles them."""
+"""Programs run operation by operation, on floats or arrays: slow, and the reference for what compiles them."""
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
@@ -14,14 +15,14 @@ from rttrr_pin.core.arrays import Array
 Columns = Sequence[Array | float] | Mapping[int, Array | float]
 
 NUMERIC: dict[Op, Callable[..., Array]] = {
-    Op.ADD: np.add,
-    Op.SUB: np.subtract,
-    Op.MUL: np.multiply,
-    Op.NEG: np.negative,
+    Op.ADD: operator.add,
+    Op.SUB: operator.sub,
+    Op.MUL: operator.mul,
+    Op.NEG: operator.neg,
     Op.SIN: np.sin,
     Op.COS: np.cos,
     Op.SIGN: np.sign,
-    Op.ABS: np.abs,
+    Op.ABS: abs,
     Op.FMA: lambda x, y, z: x * y + z,
     Op.FMS: lambda x, y, z: x * y - z,
     Op.FNMA: lambda x, y, z: z - x * y,

@@ -19,6 +19,6 @@ def norm(vectors: Array) -> Array:
     """
     size = np.abs(vectors).max(axis=-1, initial=0.0)
     exponent = np.frexp(np.where(np.isfinite(size), size, 0.0))[1]
-    lengths: Array = np.linalg.norm(np.ldexp(vectors, -exponent[..., None]), axis=-1)
+    scaled = np.ldexp(vectors, -exponent[..., None])
     with np.errstate(over="ignore"):
-        return np.ldexp(lengths, exponent)
+        return np.ldexp(np.sqrt(np.add.reduce(scaled * scaled, axis=-1)), exponent)

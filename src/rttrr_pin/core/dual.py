@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from rttrr_pin.core.algebra import Scalar
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(slots=True, eq=False)  # never changed; not frozen, which doubles what making one takes
 class Dual:
     """A value, and its derivative by each direction that it depends on.
 

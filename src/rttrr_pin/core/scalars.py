@@ -71,8 +71,12 @@ def _float_sincos(q: float | Array) -> tuple[float | Array, float | Array]:
     return np.sin(q), np.cos(q)
 
 
+def _float_sign(x: float | Array) -> float | Array:
+    return float(np.sign(x)) if isinstance(x, float) else np.sign(x)
+
+
 FLOAT = Arithmetic(
-    number=lambda value, error: value, column=lambda values: values, sincos=_float_sincos, sign=lambda x: np.sign(x)
+    number=lambda value, error: value, column=lambda values: values, sincos=_float_sincos, sign=_float_sign
 )
 
 

@@ -26,7 +26,7 @@ from rttrr_pin.core.batch import split_columns
 from rttrr_pin.core.dynamics import dynamics
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load, payloads_of
-from rttrr_pin.core.scalars import SINE_ULPS, SLACK, UNDERFLOW, UNIT_ROUNDOFF, Arithmetic, columns
+from rttrr_pin.core.scalars import FLOAT, SINE_ULPS, SLACK, UNDERFLOW, UNIT_ROUNDOFF, Arithmetic, columns
 from rttrr_pin.core.wrench import RESULTS, LinkWrenches
 
 Real: TypeAlias = Any  # float | Array: what NumPy's stubs cannot combine without casts
@@ -34,7 +34,7 @@ Real: TypeAlias = Any  # float | Array: what NumPy's stubs cannot combine withou
 PLAIN = (int, float)
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(slots=True, eq=False)  # never changed; not frozen, which doubles what making one takes
 class Bounded:
     """A computed value and a bound on its distance from the true one.
 
@@ -73,8 +73,15 @@ class Bounded:
 
     def __mul__(self, other: Any) -> Bounded | int:
         if isinstance(other, Bounded):
-            value = self.value * other.value
-            inherited = _inherited(self, other)
+            x, y, b_x, b_y = self.value, other.value, self.bound, other.bound
+            value = x * y
+            # |x| b_y + |y| b_x + b_x b_y, the error from those of the factors; most factors are exact.
+            if isinstance(b_y, float) and b_y == 0.0:
+                inherited = b_x * abs(y)
+            elif isinstance(b_x, float) and b_x == 0.0:
+                inherited = b_y * abs(x)
+            else:
+                inherited = abs(x) * b_y + (abs(y) + b_y) * b_x
             return Bounded(value, inherited + (UNIT_ROUNDOFF * abs(value) + UNDERFLOW))
         if not isinstance(other, PLAIN):
             return NotImplemented
@@ -88,15 +95,6 @@ class Bounded:
     __rmul__ = __mul__
 
 
-def _inherited(x: Bounded, y: Bounded) -> Real:
-    """|x| b_y + |y| b_x + b_x b_y, the error of a product from those of its factors; most factors are exact."""
-    if isinstance(y.bound, float) and y.bound == 0.0:
-        return x.bound * abs(y.value)
-    if isinstance(x.bound, float) and x.bound == 0.0:
-        return y.bound * abs(x.value)
-    return abs(x.value) * y.bound + (abs(y.value) + y.bound) * x.bound
-
-
 def _number(value: float, error: float) -> Scalar:
     """A number of the model; an exact 0, 1 or -1 stays a plain integer, so that products with it are exact."""
     if error == 0.0 and value in (0.0, 1.0, -1.0):
@@ -108,15 +106,14 @@ def _sincos(q: Bounded | int) -> tuple[Bounded, Bounded]:
     """Sine and cosine have slopes of at most one, so the bound of q carries over; q of a joint at rest may be plain."""
     if not isinstance(q, Bounded):
         q = Bounded(float(q), 0.0)
-    x = float(q.value) if isinstance(q.value, float) else q.value
-    s, c = np.sin(x), np.cos(x)
+    s, c = FLOAT.sincos(q.value)
     ulps = 2 * SINE_ULPS * UNIT_ROUNDOFF
     return Bounded(s, q.bound + ulps * abs(s)), Bounded(c, q.bound + ulps * abs(c))
 
 
 def _sign(x: Bounded | int) -> Bounded | int:
     """The sign of a rate, which is an exact double or the plain 0."""
-    return Bounded(np.sign(x.value), 0.0) if isinstance(x, Bounded) else x
+    return Bounded(FLOAT.sign(x.value), 0.0) if isinstance(x, Bounded) else x
 
 
 BOUNDED = Arithmetic(

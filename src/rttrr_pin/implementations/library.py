@@ -173,6 +173,8 @@ def differs(what: str, expected: ArrayLike, built: ArrayLike, scale: float = 0.0
     `scale` is that of what was rounded on the way, where it is larger than the numbers themselves.
     """
     x, y = np.asarray(expected, dtype=float), np.asarray(built, dtype=float)
+    if x.shape == y.shape and (x == y).all():  # most are, and norms take longer
+        return
     if x.shape != y.shape or not norm(np.ravel(x - y)) <= TOLERANCE * max(float(norm(np.ravel(x))), scale):
         yield f"{what}: {shown(y)}, the file says {shown(x)}"
 

@@ -24,7 +24,7 @@ is a constraint that holds still what it can.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
+from functools import cached_property, partial
 from typing import Any, NamedTuple
 
 import mujoco
@@ -64,13 +64,16 @@ class Mujoco:
         """
         self.model = model
         self.compiled = build(model)
-        refusal = own_refusal(model.urdf)
-        note = f"MuJoCo itself refuses this file; placeholders were compiled. It says: {refusal}"
-        self.notes = (note,) if refusal else ()
         self.joints = mujoco_joints(model, self.compiled)
         self.bodies = [self.compiled.body(PREFIX + name).id for name in model.link_names]
         self.axes = np.array([rotation_of(self.compiled.body_iquat[body]) for body in self.bodies]).reshape(-1, 3, 3)
         self.data = mujoco.MjData(self.compiled)
+
+    @cached_property
+    def notes(self) -> tuple[str, ...]:
+        """What MuJoCo makes of the file as it stands, which it has to compile once more for that."""
+        refusal = own_refusal(self.model.urdf)
+        return (f"MuJoCo itself refuses this file; placeholders were compiled. It says: {refusal}",) if refusal else ()
 
     def evaluate(self, batch: Batch) -> Evaluation:
         """tau, F, N, f, n by MuJoCo."""

@@ -6,6 +6,8 @@ Columns are those of docs/notation.md: q_<joint>, v_<joint>, a_<joint>; tau_<joi
 from __future__ import annotations
 
 import csv
+import itertools
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
@@ -30,6 +32,9 @@ from rttrr_pin.implementations.text_results import (
 )
 
 STATE = ("q", "v", "a")
+
+LONGEST_LINE = 4_000_000
+"""Characters; thousands of links need fewer. A device has no end of a line."""
 
 Texts: TypeAlias = dict[str, list[str]]
 """By column, one text for each row."""
@@ -199,9 +204,9 @@ def _csv(path: Path, model: Model) -> tuple[Texts, list[int]]:
     separator = max(",;\t", key=first[1].count)
     header = _split(path.name, *first, separator)
     header[0] = header[0].removeprefix("#").strip()
-    twice = [column for column in header if header.count(column) > 1] if len(set(header)) < len(header) else []
-    if twice:
-        raise InputError(f"{path.name} has the column {twice[0]!r} {header.count(twice[0])} times: name it once")
+    column, count = Counter(header).most_common(1)[0]
+    if count > 1:
+        raise InputError(f"{path.name} has the column {shortened(repr(column))} {count} times: name it once")
     cells, numbers = [], []
     for line_number, line in lines:
         row = _split(path.name, line_number, line, separator)
@@ -237,7 +242,7 @@ def _json_lines(path: Path, model: Model) -> tuple[Texts, list[int]]:
             raise InputError(f"{where}: {error}") from error
         except RttrrError as error:
             raise InputError(str(error)) from error
-        if columns and row.keys() != columns.keys():
+        if numbers and row.keys() != columns.keys():
             raise InputError(f"{where}: other quantities than in the lines before: write the same in all")
         for column, text in row.items():
             columns.setdefault(column, []).append(text)
@@ -267,7 +272,14 @@ def _lines_of(path: Path) -> Iterator[tuple[int, str]]:
     """The lines that are not blank, with their numbers."""
     try:
         with path.open(encoding="utf-8-sig") as file:
-            yield from ((number_, line) for number_, line in enumerate(file, start=1) if line.strip())
+            for count in itertools.count(1):
+                line = file.readline(LONGEST_LINE + 1)
+                if not line:
+                    return
+                if len(line) > LONGEST_LINE:
+                    raise InputError(f"{path}, line {count}: it has more than {LONGEST_LINE:,} characters")
+                if line.strip():
+                    yield count, line
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:

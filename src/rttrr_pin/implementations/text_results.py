@@ -21,6 +21,12 @@ NOT_FINITE = re.compile(r"\b(nan|inf)\b")
 FULL = 16
 """Significant digits from which a printed number stands for one float64."""
 
+FARTHEST = 400
+"""Exponents beyond which every decimal is 0 or infinite in float64."""
+
+DEEPEST = 8
+"""Lists in each other; a number for each coordinate of each joint has two."""
+
 Columns: TypeAlias = Mapping[str, Sequence[str]]
 """By joint or link the names of its numbers in one array."""
 
@@ -47,7 +53,8 @@ class Digits:
             mantissa, _, exponent = text.lower().strip("+- ").partition("e")
             whole, _, fraction = mantissa.partition(".")
             significant = len((whole + fraction).lstrip("0"))
-            decimals = len(fraction) - (int(exponent) if exponent else 0)
+            shift = float(exponent or 0)  # an exponent may have thousands of digits itself
+            decimals = len(fraction) - int(min(max(shift, -FARTHEST), FARTHEST))
             if significant > most.significant or decimals > most.decimals:
                 most = most.with_all(cls(significant, decimals))
         return most
@@ -153,7 +160,7 @@ def quantities_of(reply: object, who: str) -> dict[str, object]:
     unknown = [key for key in parts if key not in QUANTITIES]
     if unknown or not parts:
         raise ImplementationError(
-            f"{who} returned {', '.join(shortened(repr(key)) for key in unknown) or 'nothing'}: "
+            f"{who} returned {shortened(', '.join(map(repr, unknown))) or 'nothing'}: "
             f"expected tau, or an object of some of {', '.join(QUANTITIES)}"
         )
     return parts
@@ -178,11 +185,13 @@ def _counted(value: object, count: int, where: str) -> list[str]:
     return texts
 
 
-def _texts(value: object, where: str) -> Iterator[str]:
+def _texts(value: object, where: str, depth: int = 1) -> Iterator[str]:
     """Numbers that were read as text; null stands for NaN, as some writers of JSON have it."""
     if isinstance(value, list):
+        if depth > DEEPEST:
+            raise ImplementationError(f"{where} has lists in each other, more than {DEEPEST} deep: write a flat one")
         for item in value:
-            yield from _texts(item, where)
+            yield from _texts(item, where, depth + 1)
     elif value is None:
         yield "nan"
     else:

@@ -18,7 +18,7 @@ from rttrr_pin.errors import InputError
 
 MANIFEST = "package.xml"
 
-NAME = re.compile(r"<name\b[^>]*>\s*([^<\s]+)\s*</name>")
+NAME = re.compile(r"<name\b[^<>]*>\s*([^<\s]+)\s*</name>")
 
 LEVELS = 8
 """Folders above a file in which packages are looked for."""
