@@ -61,9 +61,20 @@ def _names() -> dict[str, list[str]]:
     return column_names(rttrr_pin.load(ROBOT).model)
 
 
-def _rows(rng: random.Random, count: int) -> list[dict[str, list[float]]]:
+QUANTITIES = (("tau",), ("tau", "F", "N", "f", "n"))
+"""Those of a table; few sets, since a kernel is compiled for each."""
+
+
+def table(quantities: tuple[str, ...]) -> str:
+    """A table in three digits."""
+    (row,) = _rows(random.Random(0), 1, quantities)
+    cells = [[name for key in row for name in _names()[key]], [f"{x:.3f}" for values in row.values() for x in values]]
+    return "\n".join(",".join(line) for line in cells)
+
+
+def _rows(rng: random.Random, count: int, quantities: tuple[str, ...] = ()) -> list[dict[str, list[float]]]:
     """States and what may be results."""
-    keys = ["q", "v", "a", *rng.sample(["tau", "F", "N", "f", "n"], rng.randint(1, 5))]
+    keys = ["q", "v", "a", *(quantities or rng.choice(QUANTITIES))]
     rows = [{key: [rng.uniform(-2, 2) for _ in _names()[key]] for key in keys} for _ in range(count)]
     for row in rows:
         row["q"][-4:] = [0.0, 0.6, 0.0, 0.8]

@@ -27,7 +27,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from .reader_cases import READERS, ROBOT, other_case
+from .reader_cases import QUANTITIES, READERS, ROBOT, other_case, table
 from .text_cases import HOSTILE, SEEDS, text_case
 from .urdf_campaign import campaign
 
@@ -131,9 +131,6 @@ READ: dict[str, Callable[[Path], tuple[str, str]]] = {
 }
 """What is done with a file, by the ending of its name."""
 
-WARM = {".toml": next(iter(SEEDS.values())), ".csv": "q\n", ".words": '["state", "trr", "--subject", "recursion"]'}
-"""Cases that load what the others need."""
-
 LONGEST = 3000
 """Characters of a message."""
 
@@ -165,8 +162,9 @@ def check(ending: str, data: bytes, folder: Path) -> dict[str, Any]:
 def serve(seed: int, line: Any, at: Any, stage: Any) -> None:
     """A worker: lists of numbers in, what became of each case out."""
     with tempfile.TemporaryDirectory() as folder:
-        for ending, data in WARM.items():  # the imports are no part of a case
-            check(ending, data.encode(), Path(folder))
+        warm = [(".toml", next(iter(SEEDS.values()))), (".words", '["state", "trr", "--subject", "recursion"]')]
+        for ending, text in [*warm, *((".csv", table(quantities)) for quantities in QUANTITIES)]:
+            check(ending, text.encode(), Path(folder))  # imports and compiling are no part of a case
         while (indices := line.recv()) is not None:
             tally = []
             for index in indices:

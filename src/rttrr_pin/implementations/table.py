@@ -175,15 +175,14 @@ def _numbers(columns: Columns, names: Sequence[str], lines: Sequence[int], name:
 
 
 def _parsed(texts: Sequence[str], column: str, lines: Sequence[int], name: str) -> Array:
-    values = np.empty(len(texts))
-    for k, text in enumerate(texts):
-        try:
-            values[k] = number(text)
-        except ValueError:
-            shown = shortened(repr(text))
-            fix = ": write a point for the comma" if "," in text else ""
-            raise InputError(f"{name}, line {lines[k]}, column {column}: {shown} is no number{fix}") from None
-    return values
+    values: list[float] = []
+    try:
+        values.extend(map(number, texts))
+    except ValueError:
+        text, line = texts[len(values)], lines[len(values)]
+        fix = ": write a point for the comma" if "," in text else ""
+        raise InputError(f"{name}, line {line}, column {column}: {shortened(repr(text))} is no number{fix}") from None
+    return np.array(values)
 
 
 def _binary(values: np.ndarray[Any, Any], column: str, name: str) -> tuple[Array, Digits]:

@@ -46,18 +46,17 @@ class Digits:
     @classmethod
     def of(cls, texts: Iterable[str]) -> Digits:
         """The digits of decimal numbers; of what is not finite none."""
-        most = cls()
-        for text in texts:
-            if "n" in text.lower():  # NaN, infinity
-                continue
+        most_significant = most_decimals = 0
+        for text in set(texts):
             mantissa, _, exponent = text.lower().strip("+- ").partition("e")
+            if "n" in mantissa:  # NaN, infinity
+                continue
             whole, _, fraction = mantissa.partition(".")
-            significant = len((whole + fraction).lstrip("0"))
             shift = float(exponent or 0)  # an exponent may have thousands of digits itself
             decimals = len(fraction) - int(min(max(shift, -FARTHEST), FARTHEST))
-            if significant > most.significant or decimals > most.decimals:
-                most = most.with_all(cls(significant, decimals))
-        return most
+            most_significant = max(most_significant, len((whole + fraction).lstrip("0")))
+            most_decimals = max(most_decimals, decimals)
+        return cls(most_significant, most_decimals)
 
     def with_all(self, other: Digits) -> Digits:
         """The most of both."""
