@@ -106,7 +106,8 @@ def _sincos(q: Bounded | int) -> tuple[Bounded, Bounded]:
     """Sine and cosine have slopes of at most one, so the bound of q carries over; q of a joint at rest may be plain."""
     if not isinstance(q, Bounded):
         q = Bounded(float(q), 0.0)
-    s, c = FLOAT.sincos(q.value)
+    of_value: tuple[Real, Real] = FLOAT.sincos(q.value)
+    s, c = of_value
     ulps = 2 * SINE_ULPS * UNIT_ROUNDOFF
     return Bounded(s, q.bound + ulps * abs(s)), Bounded(c, q.bound + ulps * abs(c))
 

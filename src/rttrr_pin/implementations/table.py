@@ -229,7 +229,7 @@ def _json_lines(path: Path, model: Model) -> tuple[Texts, list[int]]:
     """One object a line, with the request and the reply of a program in it (docs/notation.md)."""
     names, by_name = column_names(model), columns_of(model)
     columns: Texts = {}
-    numbers = []
+    numbers: list[int] = []
     for line_number, line in _lines_of(path):
         where = f"{path.name}, line {line_number}"
         try:
