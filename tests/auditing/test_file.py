@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import pytest
 
 from rttrr_pin.auditing import Kind, Verdict, audit, read_publication
+from rttrr_pin.cli import main
 from rttrr_pin.derivation.symbol_file import PUBLISHED
 from rttrr_pin.errors import EquationError
 from support.two_links import LINKS
@@ -240,3 +242,54 @@ def test_symbols_of_a_robot_that_has_none_name_those_there_are(tmp_path) -> None
     (tmp_path / "a.toml").write_text('symbols = "nobody"\n[[equation]]\nquantity = "definition"\nlatex = "x"\n')
     with pytest.raises(EquationError, match="one of rttrr"):
         read_publication(tmp_path / "a.toml")
+
+
+ARM = """<robot name="arm" xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:include filename="$(find parts)/body.xacro"/>
+<xacro:arg name="mass" default="1"/>
+<link name="base"/>
+<xacro:body name="arm" mass="$(arg mass)"/>
+<xacro:body name="hand" mass="1"/>
+<joint name="turn" type="continuous"><parent link="base"/><child link="arm"/></joint>
+<joint name="grip" type="continuous"><parent link="arm"/><child link="hand"/><axis xyz="1 0 0"/>
+  <mimic joint="turn"/></joint>
+</robot>
+"""
+BODY = """<robot xmlns:xacro="http://www.ros.org/wiki/xacro">
+<xacro:macro name="body" params="name mass"><link name="${name}"><inertial><mass value="${mass}"/>
+  <inertia ixx="${0.5 * float(mass)}" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link></xacro:macro>
+</robot>
+"""
+PAPER = """
+language = "python"
+[robot]
+urdf = "arm.xacro"
+[[equation]]
+number = 1
+quantity = "tau"
+joint = 1
+python = ["2.5 * qdd1 + 0.5 * qdd2"]
+"""
+
+
+def test_a_robot_s_file_is_read_as_the_options_say(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """What was assumed stands in the report, the errata sheet and the JSON."""
+    (tmp_path / "elsewhere").mkdir()
+    (tmp_path / "elsewhere" / "body.xacro").write_text(BODY)
+    (tmp_path / "robot").mkdir()
+    (tmp_path / "robot" / "arm.xacro").write_text(ARM)
+    (tmp_path / "robot" / "paper.toml").write_text(PAPER)
+    sheet = tmp_path / "sheet.md"
+    words = ["audit", str(tmp_path / "robot" / "paper.toml"), "--markdown", str(sheet)]
+    for option in (["--xacro"], ["--package", f"parts={tmp_path / 'elsewhere'}"], ["--lenient"]):
+        assert main(words) == 2
+        assert option[0] in capsys.readouterr().err
+        words += option
+    words += ["--xacro-arg", "mass:=4"]
+    assert main([*words, "--no-mimic"]) == 0
+    shown = capsys.readouterr()
+    assumed = 'assumed: <axis xyz="1 0 0"/>'
+    assert assumed in shown.out and assumed in shown.err and "axis" in sheet.read_text()
+    assert main([*words, "--no-mimic", "--json", "-"]) == 0
+    assert any(assumed in note for note in json.loads(capsys.readouterr().out)["notes"])
+    assert main(words) > 0  # the hand follows, and there is no qdd2

@@ -84,11 +84,54 @@ def test_xacro_finds_packages(tmp_path: Path) -> None:
     top.write_text(XACRO.format(package="parts_description"))
     assert rttrr_pin.load(top, xacro=True).name == "top"
     top.write_text(XACRO.format(package="missing"))
-    with pytest.raises(UrdfError, match="--package NAME=FOLDER"):
+    with pytest.raises(UrdfError, match="--package missing=FOLDER"):
         rttrr_pin.load(top, xacro=True)
     assert rttrr_pin.load(top, xacro=True, packages={"missing": tmp_path / "parts"}).name == "top"
     with pytest.raises(InputError, match="is no folder"):
         rttrr_pin.load(top, xacro=True, packages={"missing": tmp_path / "nowhere"})
+
+
+def test_a_package_that_is_named_finds_those_beside_it(tmp_path: Path) -> None:
+    """The folder of another repository is named once, and its files include one another."""
+    parts = package(tmp_path / "other" / "repository" / "parts")
+    package(tmp_path / "other" / "repository" / "group" / "links")
+    (parts / "urdf" / "parts.xacro").write_text(XACRO.format(package="links").replace("<xacro:parts/>", ""))
+    top = tmp_path / "a" / "b" / "c" / "d" / "e" / "f" / "g" / "h" / "top.xacro"
+    top.parent.mkdir(parents=True)
+    top.write_text(XACRO.format(package="parts"))
+    assert rttrr_pin.load(top, xacro=True, packages={"parts": parts}).name == "top"
+
+
+NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
+IN_VAIN = {
+    "packages": (
+        '<xacro:include filename="$(find one)/a.xacro"/><xacro:include filename="$(find two_more)/b.xacro"/>',
+        ("'one' or 'two_more'", "package.xml", "ROS_PACKAGE_PATH", "--package one=FOLDER --package two_more=FOLDER"),
+    ),
+    "arguments": (
+        '<xacro:arg name="set" default="1"/><link name="$(arg side)"/><link name="$(arg dof)_$(arg set)_$(arg given)"/>',
+        ("no value for side, dof;", "--xacro-arg side:=VALUE --xacro-arg dof:=VALUE"),
+    ),
+    "file": ('<xacro:include filename="gone.xacro"/>', ("gone.xacro, which does not exist", "--package")),
+    "folder": ('<xacro:include filename="$(find here)/gone.xacro"/>', ("gone.xacro, which does not exist",)),
+    "part": ('<xacro:macro name="arm"><link name="x"/></xacro:macro>', ("has no <link>", "the file that includes it")),
+}
+"""What a xacro file asks for in vain, and what is said of it: all that is missing, and the options."""
+
+
+@pytest.mark.parametrize("case", IN_VAIN)
+def test_what_a_xacro_file_asks_for_in_vain_is_told_at_once(tmp_path: Path, case: str) -> None:
+    body, words = IN_VAIN[case]
+    package(tmp_path / "here")
+    top = tmp_path / "robot" / "top.xacro"
+    top.parent.mkdir()
+    top.write_text(f'<robot name="r" {NAMESPACE}>{body}</robot>')
+    with pytest.raises(UrdfError) as caught:
+        rttrr_pin.load(top, xacro_args={"given": 1})
+    message = str(caught.value)
+    assert all(word in message for word in words), message
+    assert message.count("gone.xacro") <= 1 and "<class" not in message
+    assert case != "packages" or str(top.parent) in message
 
 
 def test_meshes_are_found_in_packages(tmp_path: Path) -> None:
@@ -100,6 +143,19 @@ def test_meshes_are_found_in_packages(tmp_path: Path) -> None:
     assert find_mesh("package://parts_description/meshes/arm.stl", start) == mesh
     assert find_mesh("package://other/meshes/arm.stl", start) is None
     assert find_mesh("package://other/meshes/arm.stl", None, {"other": tmp_path / "parts"}) == mesh
+
+
+@pytest.mark.parametrize("folder", ["", "file", "none", "~nobody_of_that_name", "x" * 300, "a\0b", 5], ids=repr)
+def test_what_is_no_folder_of_a_package_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, folder: str
+) -> None:
+    (tmp_path / "file").touch()
+    monkeypatch.chdir(tmp_path)
+    if folder:
+        with pytest.raises(InputError, match=r"package 'x': .* is no folder; pass the one that holds its package.xml"):
+            rttrr_pin.load("rttrr", packages={"x": folder})
+    with pytest.raises(InputError, match=r"packages is a list: pass a dict, such as"):
+        rttrr_pin.load("rttrr", packages=[folder])  # type: ignore[arg-type]
 
 
 def test_the_command_line_takes_packages(tmp_path: Path) -> None:

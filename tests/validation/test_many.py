@@ -39,6 +39,22 @@ def test_every_robot_has_a_row_for_each_base(folder: Path) -> None:
     assert all(entry.of_tolerance > 0 and entry.worst for entry in entries if entry.name != "broken")
 
 
+@pytest.mark.slow
+def test_errors_that_inspect_finds_are_counted(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """That two programs agree on a body does not mean that there can be one."""
+    monkeypatch.setenv("COLUMNS", "100")
+    text = (folder / "any-axes.urdf").read_text()
+    (folder / "worse.urdf").write_text(text.replace('ixx="', 'ixx="9', 1))  # the triangle inequality
+    assert main(["validate", str(folder), "--states", "5", "--subject", "recursion", "--json", str(folder / "x")]) == 0
+    entries = json.loads((folder / "x").read_text())["entries"]
+    wanted = {path.name: rttrr_pin.inspect(path).counts["error"] for path in folder.glob("*.urdf")}
+    assert {entry["name"]: entry["errors"] for entry in entries} == wanted and wanted["worse.urdf"] > 0
+    (row, _) = (line.split("│") for line in capsys.readouterr().out.splitlines() if "worse.urdf" in line)
+    assert str(wanted["worse.urdf"]) in [cell.strip() for cell in row][-3:-1]
+
+
 def test_the_outcome_does_not_depend_on_the_workers(folder: Path) -> None:
     sources = {path.stem: path for path in sorted(folder.glob("*.urdf"))}
     outcomes = [
@@ -113,8 +129,9 @@ def test_a_folder_as_large_as_a_disk_is_not_searched_through(
         (Task(n_states=0), InputError, "n_states is 0"),
         (Task(sampling="gauss"), UnknownNameError, "no sampling"),
         (Task(reference="bullet"), UnknownNameError, "no implementation"),
+        (Task(packages={"x": "nowhere"}), InputError, "nowhere' is no folder"),
     ],
-    ids=["states", "family", "oracle"],
+    ids=["states", "sampling", "reference", "packages"],
 )
 def test_what_is_wrong_for_all_is_said_once(folder: Path, task: Task, error: type[Exception], message: str) -> None:
     with pytest.raises(error, match=message):

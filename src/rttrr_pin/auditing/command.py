@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -14,7 +15,7 @@ from rttrr_pin.auditing import audit as run_audit
 from rttrr_pin.auditing.errata import errata
 from rttrr_pin.auditing.report import show_audit, show_equations
 from rttrr_pin.errors import InputError
-from rttrr_pin.reporting.options import check_targets, flag, quiet, target
+from rttrr_pin.reporting.options import check_targets, quiet, reading, reading_of, target, xacro
 from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json, write_text
 
 
@@ -29,7 +30,8 @@ from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progre
 @click.option(
     "--seed", type=click.IntRange(min=0), default=0, help="Of the random state at which numbers are compared."
 )
-@flag("--xacro", help="Expand a xacro file that it names as its robot, which runs the Python in that.")
+@xacro
+@reading
 @target("--json", "the outcome as JSON")
 @target("--latex", "an errata sheet as LaTeX")
 @target("--html", "an errata sheet as one HTML page")
@@ -39,12 +41,12 @@ def audit(
     file: Path | None,
     equation: tuple[str, ...],
     seed: int,
-    xacro: bool,
     json: str | None,
     latex: str | None,
     html: str | None,
     markdown: str | None,
     quiet: bool,
+    **how: Any,
 ) -> int:
     """Compare published equations of motion with the Newton-Euler recursion, term by term.
 
@@ -53,7 +55,7 @@ def audit(
     sheets = {"latex": latex, "html": html, "markdown": markdown}
     targets = {"--json": json} | {f"--{form}": where for form, where in sheets.items()}
     check_targets(targets, [] if file is None else [file])
-    publication = read_publication() if file is None else read_publication(file, xacro)
+    publication = read_publication() if file is None else read_publication(file, **reading_of(**how))
     if equation:
         publication = _only(publication, equation)
     with progress(len(publication.equations), quiet, "equations") as advance:

@@ -76,6 +76,8 @@ def _opening(result: AuditResult) -> Iterator[doc.Block]:
         "were compared, term by term, with the Newton-Euler recursion run on the same symbols."
     )
     yield doc.Paragraph((doc.Strong(publication.source), compared))
+    if result.notes:
+        yield doc.Bullets(tuple(_item("The robot's file", prose(note)) for note in result.notes))
     yield doc.Paragraph(
         f"{result.count(Verdict.MATCH)} are right as printed, {result.count(Verdict.DIFFERS)} differ, with "
         f"{counted(totals.findings, 'finding')}, and {result.count(Verdict.UNPARSED)} could not be read."

@@ -41,24 +41,36 @@ MOST_EQUATIONS = 1000
 """In one file."""
 
 
-def read_publication(path: str | PathLike[str] = RTTRR, xacro: bool = False) -> Publication:
+def read_publication(
+    path: str | PathLike[str] = RTTRR,
+    xacro: bool = False,
+    xacro_args: Mapping[str, object] | None = None,
+    lenient: bool = False,
+    mimic: bool = True,
+    packages: Mapping[str, str | PathLike[str]] | None = None,
+) -> Publication:
     """A file of equations, TOML or YAML, with its robot, symbols and conventions.
 
     Args:
         path: the file; without one, the paper on RTTRR.
         xacro: whether a xacro file behind `urdf` is expanded, which runs the Python in it.
+        xacro_args: values of its <xacro:arg>, as in `load`.
+        lenient: whether to go on where it does not say what a number is, as in `load`.
+        mimic: whether its joints with <mimic> follow others.
+        packages: folders of the ROS packages that it names.
 
     Raises:
         EquationError: the file cannot be used; the message names the place and the reason.
-        UrdfError: its URDF cannot be used.
+        UrdfError, InputError: its URDF cannot be used, as in `load`.
     """
+    reading = {"xacro": xacro, "xacro_args": xacro_args, "lenient": lenient, "mimic": mimic, "packages": packages}
     path = Path(path)
     file = read_table(path).only(FILE_KEYS)
     language = file.get("language", str, "latex")
     if language not in COORDINATES:
         raise file.error(f"language is {shown(language)}: expected {' or '.join(COORDINATES)}")
     latex = language == "latex"
-    symbols = read_symbols(*_symbol_file(file, path), latex, xacro=xacro)
+    symbols = read_symbols(*_symbol_file(file, path), latex, reading=reading)
     spellings = dict(symbols.spellings)
     passive = _spell_motion(spellings, file, symbols.robot.model, language)
     equations = tuple(_equations(file, path, symbols.robot.model, language))

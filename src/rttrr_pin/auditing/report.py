@@ -65,6 +65,8 @@ def _heading(result: AuditResult, console: Console) -> None:
             f"{counted(len(result.components), 'component')}; numbers compared at a random state, seed {result.seed}"
         )
     )
+    for note in result.notes:
+        console.print(Text(f"the robot's file: {note}"), soft_wrap=True)
 
 
 def _summary(components: Sequence[ComponentAudit]) -> Table:

@@ -181,6 +181,11 @@ class AuditResult:
         """The numbers of the equations that only define symbols."""
         return [equation.number for equation in self.publication.equations if equation.quantity == DEFINITION]
 
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What was assumed of the robot's file, or left out."""
+        return tuple(note.text for note in self.publication.robot.model.notes)
+
     def count(self, verdict: Verdict) -> int:
         """The number of components with a verdict."""
         return self.totals.verdicts[verdict]
@@ -203,6 +208,7 @@ class AuditResult:
             "language": publication.language,
             "equations": [equation.number for equation in publication.equations],
             "seed": self.seed,
+            "notes": list(self.notes),
             "totals": {
                 "components": totals.components,
                 **{str(verdict): number for verdict, number in totals.verdicts.items()},

@@ -19,14 +19,13 @@ from rttrr_pin.reporting.options import (
     friction,
     gravity,
     numbers_of,
-    packages_of,
     payload_link,
     quiet,
     reading,
+    reading_of,
     robot,
     target,
     xacro,
-    xacro_arguments,
 )
 from rttrr_pin.reporting.output import AGREE, Output, write_text
 
@@ -85,9 +84,8 @@ def derive(
     wanted = {name: where for name, where in targets.items() if where is not None}
     check_targets({f"--{name}": where for name, where in wanted.items()}, [robot])
     field = None if gravity is None else numbers_of("--gravity", gravity, 3)
-    reads = {"lenient": lenient, "mimic": not no_mimic, "packages": packages_of(package)}
-    arguments = xacro_arguments(xacro_arg)
-    model = load(robot, field, base, friction, xacro, arguments, **reads).model  # type: ignore[arg-type]
+    how = reading_of(xacro, xacro_arg, lenient, no_mimic, package)
+    model = load(robot, field, base, friction, **how).model  # type: ignore[arg-type]
     link = only_leaf(model) if payload_link is None else model.link_index(payload_link)
     start = time.perf_counter()
     published = None if numbers else published_symbols(robot, model, link)

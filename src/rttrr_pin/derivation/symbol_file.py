@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from rttrr_pin.core.model import Model
 from rttrr_pin.derivation.expressions import read_expression
@@ -50,6 +51,9 @@ SAME = 1e-9
 """Relative difference within which a number of a URDF is what the table of frames says: files are rounded."""
 
 
+READ_AS_IT_STANDS: Mapping[str, Any] = {}
+
+
 @dataclass(frozen=True)
 class PublishedSymbols:
     """A robot in the symbols of a publication.
@@ -80,7 +84,7 @@ def published_symbols(robot: str, model: Model, payload_link: int | None) -> Pub
 
 
 def read_symbols(
-    file: Table, path: Path, latex: bool, model: Model | None = None, xacro: bool = False
+    file: Table, path: Path, latex: bool, model: Model | None = None, reading: Mapping[str, Any] = READ_AS_IT_STANDS
 ) -> PublishedSymbols:
     """The robot of a file of symbols.
 
@@ -89,7 +93,7 @@ def read_symbols(
         path: of the file; its URDF is looked for beside it.
         latex: whether spellings are LaTeX.
         model: of the URDF, where it is loaded already.
-        xacro: whether a xacro file in its place is expanded, which runs the Python in it.
+        reading: how its URDF is read: arguments of `load`, by name.
 
     Raises:
         EquationError: the tables do not fit each other, or the URDF.
@@ -111,7 +115,7 @@ def read_symbols(
         if model is None:
             name = about.get("urdf", str)
             beside = path.parent / name  # a file; where there is none, the name is what `load` takes
-            model = load(str(beside) if beside.is_file() else name, xacro=xacro).model
+            model = load(str(beside) if beside.is_file() else name, **reading).model
         _check_frames(model, links)
         indices = [model.link_index(link.get("name", str)) for link in links]
         slots = {_moved(slot, indices): x for slot, x in slots.items()}

@@ -158,11 +158,13 @@ def inspect_document(
         )
 
 
-def count_errors(document: UrdfDocument) -> int:
-    """How many errors `inspect` finds in a file.
+def count_errors(document: object) -> int:
+    """How many errors `inspect` finds in a robot's file; none where there is no file.
 
     Meshes are not opened, which can take longer than a comparison of torques: no check that needs them finds errors.
     """
+    if not isinstance(document, UrdfDocument):
+        return 0
     subject = Subject(document, None)
     checks = (check for check in CHECKS if check.severity is Severity.ERROR or isinstance(check, FaultCheck))
     with np.errstate(all="ignore"):

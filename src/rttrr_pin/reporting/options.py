@@ -111,6 +111,19 @@ def numbers_of(option: str, text: str, count: int) -> list[float]:
     return numbers
 
 
+def reading_of(
+    xacro: bool, xacro_arg: Iterable[str], lenient: bool, no_mimic: bool, package: Iterable[str]
+) -> dict[str, Any]:
+    """How a file is read: the options of `xacro` and `reading`, as `load` takes them."""
+    return {
+        "xacro": xacro,
+        "xacro_args": xacro_arguments(xacro_arg),
+        "lenient": lenient,
+        "mimic": not no_mimic,
+        "packages": packages_of(package),
+    }
+
+
 def check_targets(targets: Mapping[str, str | Path | None], sources: Iterable[str | Path] = ()) -> None:
     """Before the work is done: every output can be written, none overwrites an input or another output.
 

@@ -9,12 +9,12 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from functools import lru_cache
 from itertools import islice
 from pathlib import Path
 
-from rttrr_pin.errors import InputError
+from rttrr_pin.errors import InputError, shortened
 
 MANIFEST = "package.xml"
 
@@ -35,10 +35,18 @@ def named_packages(words: Mapping[str, str | os.PathLike[str]]) -> dict[str, Pat
     Raises:
         InputError: one is no folder.
     """
-    packages = {name: Path(folder).expanduser().absolute() for name, folder in words.items()}
-    for name, folder in packages.items():
-        if not folder.is_dir():
-            raise InputError(f"package {name!r}: {folder} is no folder; pass the one that holds its {MANIFEST}")
+    if not isinstance(words, Mapping):
+        raise InputError(f"packages is a {type(words).__name__}: pass a dict, such as {{'my_description': 'ws/my'}}")
+    packages = {}
+    for name, folder in words.items():
+        try:
+            packages[name] = Path(folder).expanduser().absolute()
+            there = packages[name].is_dir()
+        except (OSError, RuntimeError, TypeError, ValueError):  # too long, no such home, no path, a zero byte
+            there = False
+        if not there:
+            shown = shortened(str(folder))
+            raise InputError(f"package {name!r}: {shown!r} is no folder; pass the one that holds its {MANIFEST}")
     return packages
 
 
@@ -61,6 +69,18 @@ def find_package(name: str, start: Path | None, named: Mapping[str, Path]) -> Pa
     if not name or "/" in name or "\\" in name or name in (".", ".."):
         return None
     return _looked_for(name, start, tuple(os.environ.get(key, "") for key in ("ROS_PACKAGE_PATH", *PREFIXES)))
+
+
+def not_found(names: Collection[str], start: Path | None) -> str:
+    """That there are no packages of these names: where they were looked for, and the fix."""
+    paths = [key for key in ("ROS_PACKAGE_PATH", *PREFIXES) if os.environ.get(key)]
+    around = "" if start is None else f" in {start}, in the folders above and beside it,"
+    options = " ".join(f"--package {name}=FOLDER" for name in names)
+    return (
+        f"no package is called {' or '.join(map(repr, names))}: its {MANIFEST} was looked for{around} and in "
+        f"{', '.join(paths) or 'ROS_PACKAGE_PATH, which is not set'}; add {options} "
+        f"(load(..., packages={{{', '.join(f'{name!r}: FOLDER' for name in names)}}}))"
+    )
 
 
 PREFIXES = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH")

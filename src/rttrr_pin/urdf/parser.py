@@ -76,7 +76,8 @@ def read_document(source: AnySource, reading: Reading = AS_IT_STANDS, tolerant: 
     name, version = _name(robot), _version(robot)
     links, joints = (_by_name(robot, tag) for tag in ("link", "joint"))
     if not links:
-        raise UrdfError("has no <link>: a robot needs one at least", source=file.name, line=robot.line, element="robot")
+        fix = "a robot needs one at least; of a part of a robot, name the file that includes it"
+        raise UrdfError(f"has no <link>: {fix}", source=file.name, line=robot.line, element="robot")
     read_links = {name: _link(name, link, version) for name, link in links.items()}
     found = ((name, _joint(name, joint, version)) for name, joint in joints.items())
     read_joints = {name: joint for name, joint in found if joint is not None}

@@ -47,7 +47,7 @@ EXAMPLE = "example:"
 EXAMPLES_PACKAGE = "example-robot-data"
 
 SUFFIXES = (".urdf", xacro.SUFFIX)
-"""How the robots in a folder end."""
+"""How the robots in a folder end, in capitals too."""
 
 MOST_ENTRIES = 100_000
 """Files and folders that are looked through for robots: some seconds, and more than any collection of robots has."""
@@ -165,7 +165,9 @@ def robots_in(folder: str | os.PathLike[str]) -> dict[str, Path]:
                 "name a folder nearer to the robots",
                 source=shown,
             )
-        robots += [Path(place, name) for name in files if Path(name).suffix in SUFFIXES and not name.startswith(".")]
+        robots += [
+            Path(place, name) for name in files if Path(name).suffix.lower() in SUFFIXES and not name.startswith(".")
+        ]
     if top in shut:
         raise UrdfError(f"cannot be read: {shut[top]}", source=shown)
     found = {path.relative_to(top).as_posix(): path for path in robots if _may_be_a_file(path)}

@@ -6,18 +6,32 @@ file is expanded only where the user asks for it (`Reading.xacro`), and never be
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any
 
 from rttrr_pin.errors import InputError, UrdfError
-from rttrr_pin.urdf.packages import find_package
+from rttrr_pin.urdf.packages import find_package, not_found
 
 SUFFIX = ".xacro"
 
 NAMESPACE = b"xmlns:xacro"
 """What a file declares that has xacro in it, whatever its name ends in."""
+
+FIND, ARGUMENT = (re.compile(rf"\$\({word}\s+([^\s()$]+)\s*\)") for word in ("find", "arg"))
+"""Where a package's folder, or the value of an argument, is asked for."""
+
+DECLARED = re.compile(r"<xacro:arg\b[^>]*?\sname\s*=\s*[\"']([^\"']*)")
+"""Where an argument has its default."""
+
+TWICE = re.compile(r"<class '[^']*'>: (.+?) \1(?= |$)")
+"""How xacro tells an error of its functions."""
+
+
+class PackageNotFoundError(LookupError):
+    """A package that neither we nor ROS know; its name is the argument."""
 
 
 def is_xacro(path: Path, text: bytes) -> bool:
@@ -60,25 +74,38 @@ def expanded(path: Path, given: Mapping[str, object], packages: Mapping[str, Pat
         raise UrdfError(
             "is a xacro file, which needs the package xacro: pip install 'rttrr-pin[xacro]'", source=str(path)
         ) from None
+    folder, before = path.absolute().parent, len(getattr(xacro, "all_includes", ()))
+
+    def find(name: str) -> Path | None:
+        """A package, from the folder of the file, or of one that it includes."""
+        included = (Path(file).absolute().parent for file in getattr(xacro, "filestack", ()) if file)
+        places = (find_package(name, start, packages) for start in dict.fromkeys([folder, *included]))
+        return next((place for place in places if place is not None), None)
+
     try:
-        with _packages_of(substitution_args, path.absolute().parent, packages):
+        with _packages_of(substitution_args, find):
             text: str = xacro.process_file(str(path), mappings=dict(given)).toprettyxml(indent="  ")
         return text.encode()
     except RecursionError:
         raise UrdfError("xacro cannot expand it: a macro calls itself without end", source=str(path)) from None
     except Exception as error:  # the file's own expressions run here, and may raise anything
-        reason = " ".join(str(error).split()) or repr(error)
-        raise UrdfError(f"xacro cannot expand it: {reason}{_fix(reason)}", source=str(path)) from error
+        files = [path, *map(Path, getattr(xacro, "all_includes", ())[before:])]
+        reason = _reason(error, _texts(files), given, folder, find)
+        raise UrdfError(f"xacro cannot expand it: {reason}", source=str(path)) from error
 
 
 @contextmanager
-def _packages_of(substitution: Any, folder: Path, packages: Mapping[str, Path]) -> Iterator[None]:
-    """Let xacro's `$(find ...)` look where `find_package` does, and ask ROS only then."""
+def _packages_of(substitution: Any, find: Callable[[str], Path | None]) -> Iterator[None]:
+    """Let xacro's `$(find ...)` look where we do, and ask ROS only then."""
     ask_ros = substitution._eval_find
 
     def find_or_ask(name: str) -> str:
-        package = find_package(name, folder, packages)
-        return ask_ros(name) if package is None else str(package)
+        if (package := find(name)) is not None:
+            return str(package)
+        try:
+            return str(ask_ros(name))
+        except Exception:  # ROS is not there, or does not know it either
+            raise PackageNotFoundError(name) from None
 
     substitution._eval_find = substitution._eval_dict["find"] = find_or_ask
     try:
@@ -87,9 +114,45 @@ def _packages_of(substitution: Any, folder: Path, packages: Mapping[str, Path]) 
         substitution._eval_find = substitution._eval_dict["find"] = ask_ros
 
 
-def _fix(reason: str) -> str:
-    if "ament_index_python" in reason:
-        return ": a package was not found; name its folder by --package NAME=FOLDER, packages={...}"
-    if "Undefined substitution argument" in reason:
-        return ": add --xacro-arg NAME:=VALUE (load(..., xacro_args={'NAME': 'VALUE'})), or give it a default"
-    return ""
+def _reason(
+    error: BaseException,
+    text: str,
+    given: Mapping[str, object],
+    folder: Path,
+    find: Callable[[str], Path | None],
+) -> str:
+    """What stops xacro, and the fix; of packages and arguments all that are missing, as far as it has read."""
+    for cause in _causes(error):
+        if isinstance(cause, PackageNotFoundError):
+            missing = [name for name in FIND.findall(text) if find(name) is None]
+            return not_found(dict.fromkeys([*cause.args, *missing]), folder)
+        if type(cause).__name__ == "ArgException":  # of xacro, which may not be installed
+            known = {*given, *DECLARED.findall(text)}
+            names = dict.fromkeys([*cause.args, *(name for name in ARGUMENT.findall(text) if name not in known)])
+            options = " ".join(f"--xacro-arg {name}:=VALUE" for name in names)
+            return (
+                f"Undefined substitution argument: no value for {', '.join(names)}; add {options} "
+                f"(load(..., xacro_args={{{', '.join(f'{name!r}: VALUE' for name in names)}}}))"
+            )
+        if isinstance(cause, FileNotFoundError) and cause.filename:
+            return (
+                f"it reads {cause.filename}, which does not exist: check that name; of a package that lies elsewhere, "
+                "name the folder by --package NAME=FOLDER"
+            )
+    return TWICE.sub(r"\1", " ".join(str(error).split())) or repr(error)
+
+
+def _causes(error: BaseException | None) -> Iterator[BaseException]:
+    """An error, and those that it wraps."""
+    while error is not None:
+        yield error
+        error = error.__cause__ or error.__context__
+
+
+def _texts(files: Iterable[Path]) -> str:
+    """The texts of the files that can be read."""
+    texts = []
+    for file in dict.fromkeys(files):
+        with suppress(OSError, ValueError):
+            texts.append(file.read_text(encoding="utf-8", errors="replace"))
+    return "\n".join(texts)

@@ -14,7 +14,6 @@ from rttrr_pin.errors import InputError
 from rttrr_pin.reporting.options import flag, outcome, robot, seed
 from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json
 from rttrr_pin.robot import Robot
-from rttrr_pin.urdf.document import UrdfDocument
 from rttrr_pin.urdf.sources import several
 from rttrr_pin.validation.options import RunOptions, conditions, drawn, payload, programs
 
@@ -106,12 +105,9 @@ def search(evaluations: int, json: str | None, quiet: bool, **run: Any) -> int:
 
 def _faults(robot: Robot, source: str) -> list[str]:
     """That both programs compute what the file says does not mean that the file says what a body can be."""
-    document = robot.model.document
-    if not isinstance(document, UrdfDocument):
-        return []
     from rttrr_pin.inspection.run import count_errors
 
-    errors = count_errors(document)
+    errors = count_errors(robot.model.document)
     count = "1 error" if errors == 1 else f"{errors} errors"
     return [f"inspect finds {count} in this file: {shlex.join(['rttrr-pin', 'inspect', source])}"] if errors else []
 

@@ -21,6 +21,7 @@ from rttrr_pin.errors import LoadWarning, ModelMismatchError, RttrrError, Unknow
 from rttrr_pin.implementations import names
 from rttrr_pin.loading import load
 from rttrr_pin.reporting.interrupts import held_back
+from rttrr_pin.urdf.packages import named_packages
 from rttrr_pin.validation.run import validate
 from rttrr_pin.validation.sampling import SAMPLINGS
 from rttrr_pin.validation.states import Progress, check_count
@@ -77,6 +78,7 @@ class Entry:
         defect: what stops it, or what differs; empty otherwise.
         seconds: wall time.
         notes: what was assumed of the file, or left out.
+        errors: how many `inspect` finds in the file; 0 where it is not read.
     """
 
     name: str
@@ -90,6 +92,7 @@ class Entry:
     defect: str = ""
     seconds: float = 0.0
     notes: tuple[str, ...] = ()
+    errors: int = 0
 
 
 def validate_many(
@@ -115,6 +118,7 @@ def validate_many(
     for program in (task.subject, task.reference):
         if program not in names():
             raise UnknownNameError("implementation", program, names())
+    named_packages(task.packages)
     if workers is not None:
         whole_number("workers", workers, 1, 10_000)
     jobs = [(name, Path(path), base, task) for name, path in sources.items() for base in BASES]
@@ -218,8 +222,11 @@ def _end_with_the_parent() -> None:
 
 def _entry(name: str, path: Path, base: Base, task: Task) -> Entry:
     """One robot on one base."""
+    from rttrr_pin.inspection.run import count_errors
+
     start = time.perf_counter()
     notes: tuple[str, ...] = ()
+    errors = 0
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", LoadWarning)  # the entry says it
@@ -233,11 +240,13 @@ def _entry(name: str, path: Path, base: Base, task: Task) -> Entry:
                 packages=task.packages,
             )
         notes = tuple(note.text for note in robot.model.notes)
+        errors = count_errors(robot.model.document)
         result = validate(robot, task.subject, task.reference, task.n_states, task.seed, task.sampling)
     except (RttrrError, MemoryError) as error:
         verdict: Verdict = "disagree" if isinstance(error, ModelMismatchError) else "unusable"
         defect = str(error).replace(str(path), path.name) or "there is not enough memory for it"
-        return Entry(name, base, verdict, defect=defect, seconds=time.perf_counter() - start, notes=notes)
+        seconds = time.perf_counter() - start
+        return Entry(name, base, verdict, defect=defect, seconds=seconds, notes=notes, errors=errors)
     worst = result.worst
     return Entry(
         name,
@@ -250,6 +259,7 @@ def _entry(name: str, path: Path, base: Base, task: Task) -> Entry:
         worst=f"{worst.quantity} at {worst.at}, state {worst.of_tolerance.state}",
         seconds=time.perf_counter() - start,
         notes=notes,
+        errors=errors,
     )
 
 

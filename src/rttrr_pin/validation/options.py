@@ -21,12 +21,11 @@ from rttrr_pin.reporting.options import (
     gravity,
     group,
     numbers_of,
-    packages_of,
     payload_link,
     reading,
+    reading_of,
     seed,
     xacro,
-    xacro_arguments,
 )
 from rttrr_pin.robot import Robot
 
@@ -113,13 +112,7 @@ class RunOptions:
 
     def reading(self) -> dict[str, Any]:
         """How the file is read, as `load` takes it."""
-        return {
-            "xacro": self.xacro,
-            "xacro_args": xacro_arguments(self.xacro_arg),
-            "lenient": self.lenient,
-            "mimic": not self.no_mimic,
-            "packages": packages_of(self.package),
-        }
+        return reading_of(self.xacro, self.xacro_arg, self.lenient, self.no_mimic, self.package)
 
     def chosen(self) -> dict[str, Any]:
         """Programs and states, as the functions of the package take them."""

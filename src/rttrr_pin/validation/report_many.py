@@ -20,14 +20,17 @@ def show_many(entries: Sequence[Entry], task: Task, seconds: float, console: Con
     robots = len(entries) // len({entry.base for entry in entries})
     states = f"{task.n_states:,} {task.sampling} states each, seed {task.seed}"
     console.print(Text(f"{robots} robots, {task.subject} against {task.reference}: {states}"))
-    table = Table("robot", "base", "joints", "links", "relative (eps)", "error / tolerance", "verdict")
-    for column in table.columns[2:6]:
+    table = Table("robot", "base", "joints", "links", "relative (eps)", "error / tolerance", "errors", "verdict")
+    for column in table.columns[2:7]:
         column.justify = "right"
     for entry in entries:
         numbers = (str(entry.joints), str(entry.links), in_eps(entry.eps), ratio(entry.of_tolerance))
-        table.add_row(Text(entry.name), entry.base, *(numbers if entry.links else [""] * 4), LOOK[entry.verdict])
+        errors = str(entry.errors or "")
+        table.add_row(
+            Text(entry.name), entry.base, *(numbers if entry.links else [""] * 4), errors, LOOK[entry.verdict]
+        )
     console.print(table)
-    console.print(Text("relative: worst normwise error over all links", "dim"))
+    console.print(Text("relative: worst normwise error over all links; errors: what inspect finds in the file", "dim"))
     defects = dict.fromkeys(f"{entry.name}: {entry.defect}" for entry in entries if entry.defect)
     worst = (entry for entry in entries if entry.verdict == "disagree" and entry.worst)
     notes = dict.fromkeys(f"{entry.name}: {note}" for entry in entries for note in entry.notes)
