@@ -14,8 +14,9 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.solids import Box, Cylinder, RigidBody, Solid, Sphere, rotation
 from rttrr_pin.inspection import Finding
 from rttrr_pin.inspection.cases import cases
+from rttrr_pin.inspection.causes import Cause, cause_of
 from rttrr_pin.inspection.checks import Subject
-from rttrr_pin.inspection.readings import MASS_UNITS, ORDERS, TENSOR_UNITS, Cause, cause_of
+from rttrr_pin.inspection.readings import MASS_UNITS, ORDERS, TENSOR_UNITS
 from rttrr_pin.inspection.run import inspect_document
 from rttrr_pin.urdf.document import ENTRIES
 from rttrr_pin.urdf.parser import read_document

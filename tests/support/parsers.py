@@ -14,7 +14,7 @@ import yourdfpy
 from numpy.typing import ArrayLike
 
 from rttrr_pin.inspection import Behaviour
-from rttrr_pin.inspection.parser_rules import merged_links
+from rttrr_pin.inspection.merged import merged_links
 from rttrr_pin.urdf.document import UrdfDocument
 from support.tolerances import CONSUMER, CONSUMER_AXES
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 from rttrr_pin.inspection.bodies import principal
 from rttrr_pin.inspection.checks import Edit, Observation, Severity, Subject, check
 from rttrr_pin.inspection.exact import Shape, is_positive, nearest_possible, rank, shape
-from rttrr_pin.inspection.parser_rules import merged_links
+from rttrr_pin.inspection.merged import merged_links
 from rttrr_pin.urdf.decimals import text_of
 from rttrr_pin.urdf.document import NO_INERTIAL, UrdfInertial
 
@@ -46,13 +46,13 @@ def _massive(subject: Subject) -> dict[str, bool]:
 def moving_without_mass(subject: Subject) -> Iterator[Observation]:
     """Each moving joint moves some mass, if the robot has any."""
     document, massive = subject.document, _massive(subject)
-    told = set[str]()
+    reported = set[str]()
     for _, name in document.walk() if massive[document.root] else ():
         joint = document.carried_by.get(name)
-        if joint is not None and joint.parent in told:
-            told.add(name)
+        if joint is not None and joint.parent in reported:
+            reported.add(name)
         elif joint is not None and joint.moves and not massive[name]:
-            told.add(name)
+            reported.add(name)
             yield Observation(
                 document.links[name], 0.0, "kg",
                 f"joint {joint.name!r} moves it, but there is no mass on it or beyond: the mass matrix is singular",

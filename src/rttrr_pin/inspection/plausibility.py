@@ -8,9 +8,10 @@ import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.inspection.cases import DENSITIES, LARGEST_GYRATION, Case, cases, ellipsoid_density
+from rttrr_pin.inspection.causes import cause_of
 from rttrr_pin.inspection.checks import Observation, Severity, Subject, check
-from rttrr_pin.inspection.parser_rules import merged_links
-from rttrr_pin.inspection.readings import LENGTH_UNITS, cause_of
+from rttrr_pin.inspection.merged import anchored
+from rttrr_pin.inspection.readings import LENGTH_UNITS
 
 MARKER = 1e-8
 """Volume of the hull [m^3]: boxes of a millimetre or two are drawn for sensors that have no drawing."""
@@ -48,8 +49,7 @@ def _about_axis(subject: Subject, case: Case) -> str:
     """That a fixed base does not feel what is wrong with a link on its first joint, where that is so."""
     document = subject.document
     joint = document.carried_by.get(case.link.name)
-    anchored = merged_links(document)[document.root].members
-    if joint is None or joint.type not in ("revolute", "continuous") or joint.parent not in anchored:
+    if joint is None or joint.type not in ("revolute", "continuous") or joint.parent not in anchored(document):
         return ""
     axis = np.array(joint.axis.floats) / np.linalg.norm(joint.axis.floats)
     gyration = np.sqrt(max(axis @ case.inertial.inertia @ axis, 0.0) / case.mass)

@@ -18,11 +18,11 @@ from rttrr_pin.errors import InputError, UnknownNameError
 from rttrr_pin.inspection import physics, plausibility, report, structure
 from rttrr_pin.inspection.bodies import LinkRow, centre_of_mass, tree
 from rttrr_pin.inspection.cases import cases
+from rttrr_pin.inspection.causes import cause_of
 from rttrr_pin.inspection.checks import Check, Edit, Finding, Severity, Subject
 from rttrr_pin.inspection.file_faults import FILE_CHECKS, FaultCheck
-from rttrr_pin.inspection.parser_rules import merged_links
+from rttrr_pin.inspection.merged import merged_links
 from rttrr_pin.inspection.parsers import Verdict, verdicts
-from rttrr_pin.inspection.readings import cause_of
 from rttrr_pin.urdf.document import UrdfDocument
 from rttrr_pin.urdf.parser import read_document
 
