@@ -95,7 +95,7 @@ def test_displays_that_are_not_what_was_stated(text: str, components: int, messa
             ("g + g", "^2^3", ""),
             (r"\cos", "(q_1^2)", " g"),
             ("g ", "/ (M_5 - M_5)", " q_1"),
-            (r"\cos", "(q_1 / 2)", ""),
+            (r"\cos", "(q_1 / 3)", ""),
             ("g /", "0", ""),
         ),
     ],

@@ -81,7 +81,7 @@ def test_python_keeps_what_it_does_not_know() -> None:
             ("", 1),
         ),
         *(
-            ("sin(q1/2)", 5),
+            ("sin(q1/3)", 5),
             ("g/(0*l1)", 4),
             ("g**-1", 4),
             ("g**l1", 4),

@@ -14,9 +14,10 @@ from rttrr_pin.auditing.derived import derive
 from rttrr_pin.auditing.printed import Quotient
 from rttrr_pin.auditing.quotients import written
 from rttrr_pin.auditing.reading.component import LONGEST
-from rttrr_pin.auditing.results import AuditResult, ComponentAudit
+from rttrr_pin.auditing.results import AuditResult
 from rttrr_pin.auditing.spelling import writing
 from rttrr_pin.errors import InputError
+from support.audits import assert_right, assert_wrong, audited, only
 from support.two_links import ARM
 
 REPORTS = Path(__file__).parents[1] / "data/reports"
@@ -56,32 +57,6 @@ dimension = "acceleration"
 
 
 PUSHED = '[coordinates]\nforce = ["force", "0"]'
-
-
-def audited(folder: Path, head: str, *equations: tuple[str, str], language: str = "latex") -> AuditResult:
-    """Equations, each with what it states, such as `quantity = "M"\nrow = 1`."""
-    tables = (f"[[equation]]\n{about}\n{language} = '''{text}'''\n" for about, text in equations)
-    (folder / "a.toml").write_text(head + "".join(tables))
-    return audit(read_publication(folder / "a.toml"))
-
-
-def only(result: AuditResult) -> ComponentAudit:
-    (component,) = result.components
-    return component
-
-
-def assert_right(result: AuditResult) -> None:
-    for component in result.components:
-        assert component.verdict is Verdict.MATCH, (component.quantity, component.unparsed, component.undeclared)
-        assert component.proven and component.evidence is not None
-        assert component.evidence.enclosed and component.evidence.excluded is False
-        assert component.evidence.corrected_off < 1e-9
-
-
-def assert_wrong(component: ComponentAudit) -> None:
-    assert component.verdict is Verdict.DIFFERS and component.findings, component
-    assert component.proven and component.evidence is not None
-    assert component.evidence.excluded and component.evidence.enclosed
 
 
 MATRICES = {

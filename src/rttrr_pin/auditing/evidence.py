@@ -13,6 +13,7 @@ from flint import arb, arb_mat
 from rttrr_pin.auditing.normalise import add_sums, sums_of_angles
 from rttrr_pin.auditing.printed import Quotient
 from rttrr_pin.auditing.publication import component_of, parts_of
+from rttrr_pin.auditing.reading.angles import DIVISORS
 from rttrr_pin.core.algebra import Matrix, Scalar, Vector
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dynamics import Result, dynamics
@@ -171,6 +172,9 @@ class Witness:
         for angle in angles(self.robot.model):
             x = values[f"q_{angle.index}"] * number(angle.multiplier) + number(angle.offset)
             values[f"s_{angle.suffix}"], values[f"c_{angle.suffix}"] = sincos(x)
+            for d in DIVISORS:  # powers of two, by which intervals are divided exactly
+                part = f"{angle.suffix}d{d}"
+                values[f"s_{part}"], values[f"c_{part}"] = sincos(x * number(1 / d))
         return values
 
     def _pinocchio(self, quantity: str) -> Mapping[str, Any]:

@@ -10,7 +10,7 @@ from typing import Any
 
 from rttrr_pin.auditing.derived import Derived
 from rttrr_pin.auditing.printed import PrintedComponent, PrintedTerm
-from rttrr_pin.auditing.reading.vocabulary import PART
+from rttrr_pin.auditing.reading.angles import add_doubles, doubled, doubles, is_angle, multiple_of
 from rttrr_pin.derivation.ring import Polynomial, Ring
 from rttrr_pin.derivation.symbols import Expression, Factors, Role, Symbol, factors_of, renamed
 
@@ -36,7 +36,11 @@ def normalise(printed: PrintedComponent, name: str, derived: Derived) -> Normali
     """Bring a derived component, by its name such as F5z, into the form of the printed one."""
     symbols = with_printed_symbols(derived.symbols, printed.terms)
     products = {factors for term in printed.terms for factors in (term.literal[1],)}
-    form = folded(derived.expressions[name], sums_of_angles(symbols), products)
+    sums = sums_of_angles(symbols)
+    form = folded(derived.expressions[name], sums, products)
+    halves = [angle for angle in of_angles(symbols) if doubled(angle)]
+    if halves:
+        form = folded(halved(form, halves, products), sums, products)
     angles = [name.removeprefix("c_") for name, symbol in symbols.items() if symbol.role is Role.COSINE]
     return Normalised(printed, in_printed_form(form, printed.terms, angles), symbols)
 
@@ -50,9 +54,12 @@ def with_names(known: Mapping[str, Symbol], used: Iterable[str]) -> Mapping[str,
     """The symbols with those of other names: sums of angles, and unknown ones."""
     names = dict.fromkeys(name for name in used if name not in known)
     symbols = dict(known)
-    sums = sums_of_angles(names)
-    lengths = {part.removeprefix("m") for angle in sums for part in angle.split("_")}  # of which there is no cosine
-    for angle in [*sorted(part for part in lengths if f"c_{part}" not in known), *sums]:
+    own = of_angles(names)
+    own += doubles(own)
+    sums = sums_of_angles(f"c_{angle}" for angle in own)
+    divided = (angle for angle in own if "d" in angle)
+    parts = {part.removeprefix("m") for angle in (*sums, *divided) for part in angle.split("_")}  # or lengths
+    for angle in [*sorted(part for part in parts if f"c_{part}" not in known), *sums]:
         subscript = _subscript(angle.split("_"))
         for letter, role in (("s", Role.SINE), ("c", Role.COSINE)):
             symbols[f"{letter}_{angle}"] = Symbol(f"{letter}_{angle}", f"{letter}_{{{subscript}}}", role)
@@ -63,18 +70,22 @@ def with_names(known: Mapping[str, Symbol], used: Iterable[str]) -> Mapping[str,
 
 def _subscript(parts: Sequence[str]) -> str:
     """An angle as the index of c or s: 12, {1,12}, 1-2, 1+1."""
-    if any(part.startswith("m") for part in parts) or len(set(parts)) < len(parts):
-        return "+".join(parts).replace("+m", "-")
+    if any(part.startswith("m") or "d" in part for part in parts) or len(set(parts)) < len(parts):
+        return "+".join(parts).replace("+m", "-").replace("d", "/")
     return ("" if all(len(index) == 1 for index in parts) else ",").join(parts)
+
+
+def of_angles(names: Iterable[str]) -> list[str]:
+    """The angles among names of sines and cosines, such as `1_2` of `c_1_2`, each once."""
+    return list(dict.fromkeys(name[2:] for name in names if is_angle(name)))
 
 
 def sums_of_angles(names: Iterable[str]) -> list[str]:
     """The sums of angles among names of sines and cosines, such as `1_2` of `c_1_2`, and those that make them up."""
     needed: set[str] = set()
-    for name in names:
-        parts = name[2:].split("_")
-        if name[:2] in ("c_", "s_") and all(map(PART.fullmatch, parts)):
-            needed |= {"_".join(parts[:k]) for k in range(2, len(parts) + 1)}
+    for angle in of_angles(names):
+        parts = angle.split("_")
+        needed |= {"_".join(parts[:k]) for k in range(2, len(parts) + 1)}
     return sorted(needed, key=lambda angle: (angle.count("_"), angle))
 
 
@@ -96,6 +107,25 @@ def folded(terms: Expression, angles: Iterable[str], printed: Collection[Factors
             _rewrite(result, (f"s_{first}", f"s_{last}"), {(c,): -HALF, (c_minus,): HALF}, printed)
         _fold(result, (f"c_{first}", f"c_{last}"), (f"s_{first}", f"s_{last}"), -sign, f"c_{angle}")
         _fold(result, (f"s_{first}", f"c_{last}"), (f"c_{first}", f"s_{last}"), sign, f"s_{angle}")
+    return result
+
+
+def halved(terms: Expression, angles: Iterable[str], printed: Collection[Factors]) -> Expression:
+    """The same sum with c = 2 c_h^2 - 1 and s = 2 s_h c_h, h of half the angle, in products that are not printed."""
+    result = dict(terms)
+    for angle in sorted(angles, key=lambda angle: min(abs(multiple_of(x)) for x in angle.split("_")), reverse=True):
+        s, c, whole = f"s_{angle}", f"c_{angle}", doubled(angle)
+        for name, new in (
+            (f"c_{whole}", {(c, c): Fraction(2), (): Fraction(-1)}),
+            (f"s_{whole}", {(s, c): Fraction(2)}),
+        ):
+            while old := [f for f in result if f not in printed and name in dict(f)]:
+                for factors in old:
+                    coefficient = result.pop(factors)
+                    for names, x in new.items():
+                        product = _exchanged(factors, (name,), names) or ()
+                        result[product] = result.get(product, Fraction(0)) + coefficient * x
+                result = {f: x for f, x in result.items() if x}
     return result
 
 
@@ -209,5 +239,6 @@ def equal(printed: Expression, derived: Expression, symbols: Mapping[str, Symbol
 def with_expanded_angles(ring: Ring, x: Polynomial) -> Polynomial:
     """A polynomial without sines and cosines of sums of angles, reduced."""
     values: dict[str, Any] = {name: ring[name] for name in ring.symbols}
+    add_doubles(values)
     add_sums(values, sums_of_angles(ring.symbols))
     return ring.substituted(x, values)

@@ -69,11 +69,8 @@ def compare(printed: Quotient, name: str, derived: Derived, aliases: Mapping[str
     candidates = derived.solutions.get(name) or [Quotient(derived.expressions[name])]
     symbols = with_names(derived.symbols, printed.names)
     ring = Ring(symbols.values())
-    sides: Pair = tuple(  # type: ignore[assignment]
-        with_expanded_angles(ring, ring.polynomial(renamed(x, aliases)))
-        for x in (printed.numerator, printed.denominator)
-    )
-    right = [(ring.polynomial(x.numerator), ring.polynomial(x.denominator)) for x in candidates]
+    sides = _expanded(ring, Quotient(renamed(printed.numerator, aliases), renamed(printed.denominator, aliases)))
+    right = [_expanded(ring, x) for x in candidates]
     equal = [pair for pair in right if _equal(ring, sides, pair)]
     if not equal and name in derived.solutions and _equal(ring, _solved(ring, sides, name, derived), right[0]):
         equal = right[:1]
@@ -81,6 +78,11 @@ def compare(printed: Quotient, name: str, derived: Derived, aliases: Mapping[str
     best = min(ways, key=lambda way: _unlike(ring, *way))
     shown = [Quotient(ring.terms(n), ring.terms(d)) for n, d in best]
     return Comparison(shown[0], shown[1], bool(equal), symbols, aliases)
+
+
+def _expanded(ring: Ring, x: Quotient) -> Pair:
+    """Numerator and denominator without sines and cosines of sums, nor of angles that have halves."""
+    return tuple(with_expanded_angles(ring, ring.polynomial(side)) for side in (x.numerator, x.denominator))  # type: ignore[return-value]
 
 
 def _equal(ring: Ring, one: Pair, other: Pair) -> bool:
@@ -93,7 +95,7 @@ def _solved(ring: Ring, sides: Pair, name: str, derived: Derived) -> Pair:
         acceleration = f"a_{other[1:]}"
         if other == name or any(f.startswith("a_") for f in solutions[0].names):
             continue
-        n, d = ring.polynomial(solutions[0].numerator), ring.polynomial(solutions[0].denominator)
+        n, d = _expanded(ring, solutions[0])
         powers = [_by_power(ring, side, acceleration) for side in sides]
         degree = max((power for side in powers for power in side), default=0)
         sides = tuple(  # type: ignore[assignment]

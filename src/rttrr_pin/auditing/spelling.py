@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from fractions import Fraction
 from functools import lru_cache
 
 from rttrr_pin.auditing.publication import Publication
+from rttrr_pin.auditing.reading.angles import coordinate_of, multiple_of
 from rttrr_pin.derivation.latex import in_order, latex_sum
 from rttrr_pin.derivation.numbers import fits
 from rttrr_pin.derivation.ring import nearest
@@ -44,7 +44,7 @@ def writing(publication: Publication, symbols: Mapping[str, Symbol], examples: S
     for name, symbol in symbols.items():
         text = preferred.get(name, symbol.latex)
         parts = name[2:].split("_")
-        angle = [preferred.get(f"q_{k.removeprefix('m')}", "") for k in parts]
+        angle = [preferred.get(f"q_{coordinate_of(part)}", "") for part in parts]
         if symbol.role in (Role.COSINE, Role.SINE) and all(angle):
             function = _python_function if publication.language == "python" else _latex_function
             text = function(symbol, angle, examples)
@@ -57,7 +57,7 @@ def _latex_function(symbol: Symbol, angle: Sequence[str], examples: Sequence[str
     """A sine or cosine of an angle or of a sum of angles, in the manner of the first example."""
     several = len(angle) > 1
     summed, word = _summed(symbol, angle, " "), "cos" if symbol.role is Role.COSINE else "sin"
-    if len(set(angle)) < len(angle):  # 2 q_1 has no index
+    if len(set(angle)) < len(angle) or "d" in symbol.name[2:]:  # 2 q_1 and q_1 / 2 have no index
         return rf"\{word}({summed})"
     example = next(filter(None, (_example(text, several) for text in examples)), None)
     if example is None:
@@ -89,12 +89,16 @@ def _python_function(symbol: Symbol, angle: Sequence[str], examples: Sequence[st
 
 def _summed(symbol: Symbol, angle: Sequence[str], times: str) -> str:
     """The angle of a sine or cosine, in the letters of its parts: 2 q_1 - q_2."""
-    signs = [-1 if part.startswith("m") else 1 for part in symbol.name[2:].split("_")]
-    multiples: Counter[str] = Counter()
-    for letter, sign in zip(angle, signs, strict=True):
-        multiples[letter] += sign
-    terms = [(n, letter if abs(n) == 1 else f"{abs(n)}{times}{letter}") for letter, n in multiples.items()]
-    return " ".join(f"{'-' if n < 0 else '+'} {text}" for n, text in terms).removeprefix("+ ")
+    multiples: dict[str, Fraction] = {}
+    for letter, part in zip(angle, symbol.name[2:].split("_"), strict=True):
+        multiples[letter] = multiples.get(letter, Fraction(0)) + multiple_of(part)
+    signed = [f"{'-' if x < 0 else '+'} {_multiplied(abs(x), letter, times)}" for letter, x in multiples.items()]
+    return " ".join(signed).removeprefix("+ ")
+
+
+def _multiplied(multiple: Fraction, letter: str, times: str) -> str:
+    n, d = multiple.numerator, multiple.denominator
+    return ("" if n == 1 else f"{n}{times}") + letter + ("" if d == 1 else f"/{d}")
 
 
 def _python_number(x: Fraction) -> str:

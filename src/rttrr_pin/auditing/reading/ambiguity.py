@@ -12,12 +12,16 @@ from fractions import Fraction
 from itertools import pairwise
 from math import prod
 
+from rttrr_pin.auditing.reading.angles import PI, Angle, angle_in, angle_of, is_number
 from rttrr_pin.auditing.reading.grammar import UnreadableError
 from rttrr_pin.auditing.reading.nodes import Atom, Factor, Group, Named, Product
-from rttrr_pin.auditing.reading.vocabulary import FUNCTIONS, Multiples, Vocabulary, angle_of, multiples_of
+from rttrr_pin.auditing.reading.vocabulary import FUNCTIONS, Vocabulary
 
 MOST = 64
 """Readings of one product; more than that are no reading but a riddle."""
+
+CIRCLE = Atom(r"\pi")
+"""Pi, where it is no symbol of the text."""
 
 Factors = tuple[Factor, ...]
 Ways = list[tuple[Factors, str]]
@@ -155,7 +159,8 @@ def _takes_argument(factors: Factors, i: int, vocabulary: Vocabulary) -> bool:
     if following is None or following.operator:
         return False
     if isinstance(following.body, Group):
-        return atom.letters.startswith("\\") or _angle(following.body, vocabulary) is not None
+        angle = _angle(following.body, vocabulary) or {}
+        return atom.letters.startswith("\\") or any(k > 0 for k in angle)
     return isinstance(following.body, Atom) and vocabulary.coordinate(following.body) is not None
 
 
@@ -167,7 +172,7 @@ def _with_multiples(factors: Factors, vocabulary: Vocabulary) -> Factors:
         named = isinstance(left[0].body, Atom) and left[0].body.letters in (r"\cos", r"\sin")
         if named and len(left) > 2 and not left[1].operator and not left[2].operator and left[1].exponent is None:
             number, angle = left[1], left[2]
-            if isinstance(number.body, Fraction) and angle.atom is not None and vocabulary.coordinate(angle.atom):
+            if _is_number(number, vocabulary) and angle.atom is not None and vocabulary.coordinate(angle.atom):
                 inside = Product((), (number, replace(angle, exponent=None)), number.start, angle.start)
                 group = Factor(Group((inside,), number.start, angle.start), number.start, angle.exponent)
                 result += [left[0], group]
@@ -177,13 +182,23 @@ def _with_multiples(factors: Factors, vocabulary: Vocabulary) -> Factors:
     return tuple(result)
 
 
-def _angle(group: Group, vocabulary: Vocabulary) -> Multiples | None:
-    """The angle that a bracket is; None where it is none."""
+def _is_number(factor: Factor, vocabulary: Vocabulary) -> bool:
+    """Whether it is a number, or a quotient of numbers."""
+    if not isinstance(factor.body, Group):
+        return isinstance(factor.body, Fraction)
+    return bool(factor.body.divisor) and is_number(_angle(factor.body, vocabulary) or {PI: Fraction(1)})
+
+
+def _angle(group: Group, vocabulary: Vocabulary) -> Angle | None:
+    """The angle that a bracket or a quotient is; None where it is none."""
 
     def coordinate(factor: Factor) -> int | None:
-        return None if factor.atom is None else vocabulary.coordinate(factor.atom)
+        atom = factor.atom
+        if atom == CIRCLE and atom not in vocabulary:
+            return PI
+        return None if atom is None else vocabulary.coordinate(atom)
 
-    return None if group.divisor else multiples_of(group.products, coordinate)
+    return angle_in((Product((), (Factor(group, group.start),), group.start, group.end),), coordinate)
 
 
 def _named(factors: Factors, vocabulary: Vocabulary) -> Iterator[Factor]:
@@ -210,16 +225,18 @@ def _symbol(atom: Atom, start: int, vocabulary: Vocabulary) -> Named:
 
 def _function(function: Factor, argument: Factor, vocabulary: Vocabulary) -> Factor:
     note = ""
-    multiples: Multiples | None = None
+    multiples: Angle | None = None
     if isinstance(argument.body, Group):
         multiples = _angle(argument.body, vocabulary)
     elif isinstance(argument.body, Atom) and (index := vocabulary.coordinate(argument.body)) is not None:
-        multiples = {index: 1}
+        multiples = {index: Fraction(1)}
         if argument.exponent is not None:
             note = f"the power {argument.exponent} behind {argument.body} read as that of its sine or cosine"
     letters = function.body.letters if isinstance(function.body, Atom) else ""
     angle = angle_of(FUNCTIONS[letters], multiples, argument.start)
-    return replace(function, body=replace(angle, note=note), exponent=function.power * argument.power)
+    if isinstance(angle, Named):
+        angle = replace(angle, note=joined(note, angle.note))
+    return replace(function, body=angle, exponent=function.power * argument.power)
 
 
 def signs(lines: Sequence[Sequence[int]]) -> list[tuple[int, str]]:

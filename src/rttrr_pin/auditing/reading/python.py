@@ -9,11 +9,12 @@ from fractions import Fraction
 from itertools import accumulate
 
 from rttrr_pin.auditing.printed import PrintedComponent
+from rttrr_pin.auditing.reading.angles import PI, angle_in, angle_of
 from rttrr_pin.auditing.reading.component import check_length, printed_component
 from rttrr_pin.auditing.reading.grammar import UnreadableError
 from rttrr_pin.auditing.reading.multiply import constant, terms_of
 from rttrr_pin.auditing.reading.nodes import LARGEST_POWER, Factor, Group, Named, Product
-from rttrr_pin.auditing.reading.vocabulary import angle_of, index_of, multiples_of, unclashing
+from rttrr_pin.auditing.reading.vocabulary import index_of, unclashing
 from rttrr_pin.derivation.numbers import exact_number
 from rttrr_pin.derivation.ring import nearest
 from rttrr_pin.errors import InputError, shortened
@@ -23,6 +24,12 @@ Abbreviations = Mapping[str, Group]
 
 FUNCTIONS = {"cos": "c", "sin": "s"}
 """Functions of an angle, and what the names of their values begin with."""
+
+CIRCLES = ("pi", "PI", "M_PI")
+"""Variables, also of a module, that are pi where they are no symbols of the text."""
+
+RADIANS = ("radians", "deg2rad")
+"""Functions of an angle in degrees."""
 
 SymbolNode = ast.Name | ast.Attribute | ast.Subscript
 
@@ -81,7 +88,15 @@ def _one_way(factors: tuple[Factor, ...]) -> list[tuple[tuple[Factor, ...], str]
 
 
 def _coordinate(factor: Factor) -> int | None:
-    return index_of(factor.body.name) if isinstance(factor.body, Named) else None
+    """Of a variable that is one its index, or what stands for pi."""
+    if not isinstance(factor.body, Named):
+        return None
+    return PI if factor.body.unknown.rpartition(".")[2] in CIRCLES else index_of(factor.body.name)
+
+
+def _called(node: ast.Call) -> str:
+    """The name of a function without its module."""
+    return node.func.attr if isinstance(node.func, ast.Attribute) else ast.unparse(node.func)
 
 
 class _Source:
@@ -173,6 +188,10 @@ class _Source:
                 yield from self._factors(base, self._power(exponent, power))
             case ast.Call(func=called, args=[ast.Name("t")], keywords=[]) if ast.unparse(called) in self.known:
                 yield Factor(self._symbol(ast.unparse(called)), start, power)  # q1(t)
+            case ast.Call(args=[degrees], keywords=[]) if _called(node) in RADIANS:
+                yield Factor(Fraction(1, 180), start, power)
+                yield Factor(Named("pi", "pi"), start, power)
+                yield Factor(Group(self.products(degrees), start, self._end(node)), start, power)
             case ast.Call():
                 yield Factor(self._angle(node), start, power)
             case ast.Name() | ast.Attribute() | ast.Subscript():
@@ -200,12 +219,12 @@ class _Source:
             raise self._fault(f"wanted a whole power from 0 to {LARGEST_POWER}, got {nearest(power):g}", exponent)
         return int(power)
 
-    def _angle(self, node: ast.Call) -> Named:
-        called = node.func.attr if isinstance(node.func, ast.Attribute) else ast.unparse(node.func)
+    def _angle(self, node: ast.Call) -> Named | Fraction:
+        called = _called(node)
         if called not in FUNCTIONS or len(node.args) != 1 or node.keywords:
             raise self._fault("the only functions are sin and cos of one angle; write it out", node)
-        multiples = multiples_of(self.products(node.args[0]), _coordinate)
-        return angle_of(FUNCTIONS[called], multiples, self._start(node.args[0]))
+        angle = angle_in(self.products(node.args[0]), _coordinate)
+        return angle_of(FUNCTIONS[called], angle, self._start(node.args[0]))
 
     def _symbol(self, variable: str) -> Named:
         if variable in self.known:

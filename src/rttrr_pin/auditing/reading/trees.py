@@ -137,6 +137,8 @@ def _word(tree: Tree[Token]) -> Atom:
 def _scripted(factor: Factor, script: Node) -> Factor:
     children = script.children if isinstance(script, Tree) else [script]
     rule = _rule(children[0])
+    if rule == "DEGREE":
+        return _in_degrees(factor, script)
     below = rule in ("SUB_DIGIT", "UNDERSCORE")
     mark = {"TRANSPOSE": "T", "PRIME": "'"}.get(rule) or spelled(children[-1])
     mark = mark.removeprefix("_" if below else "^").strip()
@@ -158,6 +160,15 @@ def _scripted(factor: Factor, script: Node) -> Factor:
     if not isinstance(body, Atom):
         raise UnreadableError("a whole number is wanted as the power of a number or bracket", start_of(script))
     return replace(factor, body=replace(body, superscript=body.superscript + mark))
+
+
+def _in_degrees(factor: Factor, script: Node) -> Factor:
+    """A number of degrees as the part of pi that it is."""
+    start, end = factor.start, end_of(script)
+    if not isinstance(factor.body, Fraction) or factor.exponent is not None:
+        raise UnreadableError("degrees are wanted of a number", start)
+    parts = Factor(factor.body / 180, start), Factor(Atom(r"\pi"), start)
+    return replace(factor, body=Group((Product((), parts, start, end),), start, end))
 
 
 def spelled(node: Node) -> str:

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections import Counter
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from fractions import Fraction
-from math import prod
 
+from rttrr_pin.auditing.reading.angles import LARGEST_MULTIPLE, Angle, angle_of, is_angle
 from rttrr_pin.auditing.reading.grammar import UnreadableError
-from rttrr_pin.auditing.reading.nodes import Atom, Factor, Group, Named, Product
+from rttrr_pin.auditing.reading.nodes import Atom, Named
 from rttrr_pin.auditing.reading.trees import atom_of
 from rttrr_pin.errors import InputError
 
@@ -20,56 +19,6 @@ FUNCTIONS = {"c": "c", "C": "c", r"\cos": "c", "s": "s", "S": "s", r"\sin": "s"}
 """Spellings of cosine and sine, and what the names of their values begin with."""
 
 
-LARGEST_MULTIPLE = 12
-"""Of all coordinates in one angle."""
-
-PART = re.compile(r"m?\d+")
-"""What the name of an angle is made of: 1_1_m2 is 2 q_1 - q_2."""
-
-Multiples = Mapping[int, int]
-"""An angle: whole multiples of coordinates, by their indices; none of them 0."""
-
-
-def angle_of(function: str, multiples: Multiples | None, start: int) -> Named:
-    """The cosine ("c") or sine ("s") of an angle that stands at `start`; the first multiple in its name is positive.
-
-    Raises:
-        UnreadableError: the angle is no sum of whole multiples of coordinates.
-    """
-    total = sum(map(abs, (multiples or {}).values()))
-    if not multiples or total > LARGEST_MULTIPLE:
-        raise UnreadableError("the angle is wanted as a coordinate, or a sum or multiple of coordinates", start)
-    turn = -1 if multiples[min(multiples)] < 0 else 1
-    parts = [f"{'m' if n * turn < 0 else ''}{k}" for k, n in sorted(multiples.items()) for _ in range(abs(n))]
-    return Named("_".join([function, *parts]), sign=turn if function == "s" else 1)
-
-
-def multiples_of(products: Sequence[Product], coordinate: Callable[[Factor], int | None]) -> Multiples | None:
-    """The angle that a sum is; None where it is none. `coordinate` gives the index of a factor that is one."""
-    total: Counter[int] = Counter()
-    for product in products:
-        number = Fraction(prod(product.signs[-1]) if product.signs else 1)
-        inner: Multiples | None = None
-        for factor in product.factors:
-            if isinstance(factor.body, Fraction) and factor.operator != "/" and factor.power == 1:
-                number *= factor.body
-                continue
-            if inner is not None or factor.operator == "/" or factor.power != 1:
-                return None
-            if isinstance(factor.body, Group):
-                inner = None if factor.body.divisor else multiples_of(factor.body.products, coordinate)
-            else:
-                index = coordinate(factor)
-                inner = None if index is None else {index: 1}
-            if inner is None:
-                return None
-        if inner is None or number.denominator != 1 or abs(number) > LARGEST_MULTIPLE:
-            return None
-        for index, multiple in inner.items():
-            total[index] += int(number) * multiple
-    return {index: multiple for index, multiple in total.items() if multiple}
-
-
 def index_of(name: str) -> int | None:
     """The index of a coordinate by its name; None for any other name."""
     digits = name.removeprefix(COORDINATE)
@@ -78,9 +27,7 @@ def index_of(name: str) -> int | None:
 
 def unclashing(name: str, known: Collection[str]) -> str:
     """A name for a symbol that is not known, with `_` behind it as often as it takes to be no known symbol's."""
-    function, *indices = name.split("_")
-    angle = function in FUNCTIONS.values() and bool(indices) and all(map(PART.fullmatch, indices))
-    return unclashing(f"{name}_", known) if angle or name in known else name
+    return unclashing(f"{name}_", known) if is_angle(name) or name in known else name
 
 
 class Vocabulary:
@@ -135,9 +82,10 @@ class Vocabulary:
         multiples = self._multiples(atom.subscript)
         if not multiples or not self.coordinates.issuperset(multiples):
             return None
-        return angle_of(FUNCTIONS[atom.letters], multiples, 0)
+        angle = angle_of(FUNCTIONS[atom.letters], multiples, 0)
+        return angle if isinstance(angle, Named) else None
 
-    def _multiples(self, subscript: str) -> Multiples:
+    def _multiples(self, subscript: str) -> Angle:
         """The angle of an index: digits, numbers or coordinates, each once, with signs or commas between them."""
         if subscript.isdecimal():
             terms: list[tuple[int, int | None]] = [(1, int(digit)) for digit in subscript]
@@ -146,7 +94,7 @@ class Vocabulary:
             if "".join(sign + part for sign, part in parts) != subscript or len(parts) > LARGEST_MULTIPLE:
                 return {}
             terms = [(-1 if sign.endswith("-") else 1, self._index(part)) for sign, part in parts]
-        indices = {index: sign for sign, index in terms if index is not None}
+        indices = {index: Fraction(sign) for sign, index in terms if index}
         return indices if len(indices) == len(terms) else {}
 
     def _index(self, text: str) -> int | None:
