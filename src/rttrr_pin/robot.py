@@ -398,16 +398,16 @@ class Robot:
 
         Args:
             joints: by name of a moving joint the coordinate at which it is locked [rad or m]; of a joint with several
-                coordinates all of them. These doubles are exact.
+                coordinates all of them. These doubles are exact. Of a floating base the joint is called `root_joint`:
+                its seven are the pose at which the base is fixed then.
 
         Raises:
             UnknownNameError: no joint that moves by itself is called so.
-            InputError: the floating base was named.
+            NumberError: the length of a quaternion is not 1 to rounding.
         """
         model = altered.with_locked(self.model, joints)
         if model.document is not None:
             from rttrr_pin.urdf.altered import with_fixed  # loads lxml
 
-            locked = [joint for joint in model.joints if joint.lock is not None]
-            model = replace(model, document=with_fixed(model.document, locked))
+            model = replace(model, document=with_fixed(model.document, model))
         return Robot(model)

@@ -208,6 +208,71 @@ def test_other_programs_read_locked_robots(reference: str, seed: int) -> None:
     assert validate(ours, reference=reference, n_states=50, sampling="mixed").passed
 
 
+def posed(seed: int, others: bool = False) -> tuple[Robot, Robot, dict[str, Any]]:
+    """A floating tree, the same with its base locked at a drawn pose, and other joints if wished; and where."""
+    robot = tree(seed, mimics=True, base="floating", types=ONE_AXIS if seed % 2 else TREE_TYPES)
+    locked = {"root_joint": drawn(robot, seed)[0][0, :7]}
+    if others:
+        locked |= {joint.name: drawn(robot, seed)[0][0, 7] for joint in robot.model.moving[1:2] if joint.nq == 1}
+    return robot, robot.with_locked(locked), locked
+
+
+@pytest.mark.parametrize("others", [False, True])
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_locked_base_is_a_fixed_one_at_that_pose(seed: int, others: bool) -> None:
+    """The floating robot at zero rates there, and Pinocchio's reduced model; its text reads as the same."""
+    robot, ours, locked = posed(seed, others)
+    assert not ours.model.floating and "root_joint" not in ours.joint_names
+    q, v, a = drawn(ours)
+    free = np.array([joint.name not in locked for joint in robot.model.moving for _ in range(joint.nv)])
+    free_q = np.array([joint.name not in locked for joint in robot.model.moving for _ in range(joint.nq)])
+    Q, V, A = (np.zeros((STATES, n)) for n in (robot.model.nq, robot.model.nv, robot.model.nv))
+    Q[:, ~free_q] = np.concatenate([np.atleast_1d(x) for x in locked.values()])
+    Q[:, free_q], V[:, free], A[:, free] = q, v, a
+    fixed, floating = ours.inverse_dynamics(q, v, a), robot.inverse_dynamics(Q, V, A)
+    assert norm_error(fixed.tau, floating.tau[:, free]) <= ROUNDING if free.any() else True
+    for name in ("F", "N", "f", "n"):
+        assert norm_error(getattr(fixed, name), getattr(floating, name)) <= ROUNDING
+    again = rttrr_pin.load(ours.model.urdf)
+    assert (again.link_names, again.joint_names) == (ours.link_names, ours.joint_names)
+    assert norm_error(again.inverse_dynamics(q, v, a).n, fixed.n) <= ROUNDING
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_a_locked_base_is_that_of_pinocchios_reduced_model(seed: int) -> None:
+    robot = tree(seed, mimics=False, base="floating")
+    pose = drawn(robot, seed)[0][0]
+    model, ours = pin_model(robot), robot.with_locked({"root_joint": pose[:7]})
+    reduced = pin.buildReducedModel(model, [model.getJointId("root_joint")], pin_q(robot, pose))
+    data, (q, v, a) = reduced.createData(), drawn(ours)
+    theirs = np.array([pin.rnea(reduced, data, pin_q(ours, q[k]), v[k], a[k]) for k in range(STATES)])
+    assert ours.model.nv == reduced.nv
+    if ours.model.nv:
+        assert norm_error(ours.inverse_dynamics(q, v, a).tau, theirs) <= ROUNDING
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_a_locked_base_is_as_exact_as_its_doubles(mode: Any) -> None:
+    robot, ours, locked = posed(1)
+    q, v, a = drawn(ours)
+    pose, still = np.tile(locked["root_joint"], (STATES, 1)), np.zeros((STATES, 6))
+    whole_of_it = robot.enclose(np.hstack([pose, q]), np.hstack([still, v]), np.hstack([still, a]), parameters=mode)
+    exact = ours.enclose(q, v, a, parameters=mode)
+    np.testing.assert_array_equal(exact.n.lower, whole_of_it.n.lower)
+    np.testing.assert_array_equal(exact.n.upper, whole_of_it.n.upper)
+    bounds = ours.compile(("n", "n_bound"))(q, v, a)
+    assert (np.abs(bounds["n"] - exact.n.lower) <= bounds["n_bound"] + (exact.n.upper - exact.n.lower)).all()
+
+
+@pytest.mark.parametrize("reference", ["pinocchio", "mujoco", "lagrange", "recursion"])
+def test_other_programs_read_a_locked_base(reference: str) -> None:
+    robot = rttrr_pin.load(random_chain(3, ("revolute", "prismatic", "continuous")), base="floating")
+    pose = drawn(robot)[0][0, :7]
+    ours = robot.with_locked({"root_joint": pose}).with_payload_body(**BODY)
+    assert validate(ours, reference=reference, n_states=50, sampling="mixed").passed
+    assert validate(ours.with_locked({"joint_2": 0.1}), reference=reference, n_states=20, sampling="mixed").passed
+
+
 def test_its_text_reads_as_the_same_robot() -> None:
     robot = rttrr_pin.load("rttrr").with_locked({"joint_2": 0.2, "joint_5": 1.0}).with_payload_body(**BODY)
     again = rttrr_pin.load(robot.model.urdf)
@@ -280,8 +345,7 @@ def test_a_text_with_a_default_namespace_keeps_it() -> None:
     robot = rttrr_pin.load("rttrr")
     document = robot.model.document
     spaced = replace(document, text=document.text.replace("<robot ", '<robot xmlns="urdf" ', 1))  # type: ignore[type-var]
-    joint = robot.with_locked({"joint_2": 0.2}).model.joints[1]
-    model = pin.buildModelFromXML(with_fixed(spaced, [joint]).text)
+    model = pin.buildModelFromXML(with_fixed(spaced, robot.with_locked({"joint_2": 0.2}).model).text)
     assert list(model.names)[1:] == ["joint_1", "joint_3", "joint_4", "joint_5"]
 
 
@@ -292,8 +356,8 @@ def test_what_cannot_be_locked(rttrr: Robot) -> None:
         rttrr.with_locked({"joint_1": np.inf})
     with pytest.raises(ShapeError, match="one state"):
         rttrr.with_locked({"joint_1": [0.0, 1.0]})
-    with pytest.raises(InputError, match="base='fixed'"):
-        rttrr_pin.load("rttrr", base="floating").with_locked({"root_joint": [0, 0, 0, 0, 0, 0, 1]})
+    with pytest.raises(NumberError, match="divide it by its length"):  # as other programs read it, it is another turn
+        rttrr_pin.load("rttrr", base="floating").with_locked({"root_joint": [0, 0, 0, 0, 0, 0, 1 + 1e-13]})
     text = random_chain(7, ("revolute", "revolute"))
     follower = rttrr_pin.load(text.replace("</joint>", '<mimic joint="joint_2"/></joint>', 1))
     with pytest.raises(UnknownNameError, match="follows 'joint_2': lock that one"):

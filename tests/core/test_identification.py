@@ -174,6 +174,31 @@ def test_the_condition_number_tells_a_poor_trajectory(rttrr: Robot) -> None:
     assert base.condition(Y[:1]) == np.inf
 
 
+def test_what_a_trajectory_hardly_tells_is_said_in_words(rttrr: Robot) -> None:
+    """Joints that move alike but for a ten-thousandth, and one that stands still."""
+    base = rttrr.base_parameters(joint_effects=True)
+    q, v, a = np.random.default_rng(0).uniform(-1.0, 1.0, (3, 300, 5))
+    assert base.advice(rttrr.regressor(q, v, a, joint_effects=True)) == ()
+    v[:, 2] = a[:, 2] * (1 + 1e-4 * q[:, 2])  # its rate is nearly its acceleration
+    (one,) = base.advice(rttrr.regressor(q, v, a, joint_effects=True))
+    assert "armature of joint_3 and damping of joint_3" in one or "damping of joint_3 and armature of joint_3" in one
+    v[:, 2] = a[:, 2] = 0.0
+    told = base.advice(rttrr.regressor(q, v, a, joint_effects=True))
+    assert any(line.startswith("damping of joint_3 does not show: let joint_3 run") for line in told)
+    assert "add states" in base.advice(rttrr.regressor(q[:1], v[:1], a[:1], joint_effects=True))[-1]
+
+
+def test_a_rank_in_doubt_names_the_parameters_that_decide_it() -> None:
+    Y = np.zeros((4, 1, 3))
+    Y[:, 0] = [[1, 0, 1], [0, 1, 1], [0, 0, 3e-9], [0, 0, 0]]
+    names = ("m of a", "m of b", "m of c")
+    kept, dropped = base_parameters(names, Y, 1e-9), base_parameters(names, Y, 1e-8)
+    assert (kept.rank, dropped.rank) == (3, 2)
+    assert "m of c is nearly dependent" in kept.summary() and "above that" in kept.summary()
+    assert "m of c is dependent" in dropped.summary() and "below that" in dropped.summary()
+    assert "dependent on those" not in base_parameters(names, Y, 1e-15).summary()
+
+
 @pytest.mark.slow
 def test_columns_of_armature_and_friction_are_what_the_joints_take() -> None:
     """Of followers too, by virtual work."""

@@ -26,7 +26,7 @@ SEEDS = range(12)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_random_trees_agree_with_pinocchio(seed: int, base: Any) -> None:
     """All joint types, branches, followers, massless frames, friction; 1,000 more in benchmarks/random_trees.py."""
-    robot = rttrr_pin.load(random_tree(seed, 1 + 2 * seed), base=base, friction=True)
+    robot = rttrr_pin.load(random_tree(seed, 2 + 2 * seed), base=base, friction=True)
     result = validate(robot, "recursion", n_states=16, seed=seed, sampling="mixed")
     assert result.passed, result.worst
 
@@ -96,6 +96,40 @@ def test_followers_of_followers_are_multiplied_out() -> None:
     assert mimic is not None
     assert (mimic.joint, mimic.multiplier, mimic.offset) == (2, 6.0, 9.0)
     assert robot.joint_names == ("joint_3",)
+
+
+def followers(*multipliers: str, friction: str = "0") -> str:
+    """A chain in which each joint but the last follows the next."""
+    joints = random_chain(9, ("revolute",) * (len(multipliers) + 1)).split("</joint>")
+    dynamics = f'<dynamics friction="{friction}"/>'
+    for i, x in enumerate(multipliers):
+        joints[i] += f'{dynamics}<mimic joint="joint_{i + 2}" multiplier="{x}"/>'
+    return "</joint>".join(joints)
+
+
+@pytest.mark.parametrize(
+    "lost", [("1e-200", "-1e-200"), ("1e-155", "1e-155"), ("1e200", "1e200"), ("1e-310", "1", "1")]
+)
+def test_a_chain_whose_product_float64_does_not_hold_is_refused(lost: tuple[str, ...]) -> None:
+    """It is neither zero nor infinite, nor has it lost digits; without mimic it can be read."""
+    with pytest.raises(UrdfError, match="float64 does not hold to its precision"):
+        rttrr_pin.load(followers(*lost))
+    assert len(rttrr_pin.load(followers(*lost), mimic=False).joint_names) == len(lost) + 1
+
+
+@pytest.mark.parametrize("held", [("1e-60", "-1e60"), ("1e-200", "0", "1e-200"), ("1e-150", "1e-150"), ("-1e-300",)])
+def test_what_a_chain_multiplies_is_exact(held: tuple[str, ...]) -> None:
+    """Between the products of the parts may lie anything; friction keeps its sign through rates of 1e-300."""
+    robot = rttrr_pin.load(followers(*held, friction="3"), friction=True)
+    states = Sampler(robot.model, "mixed", 1).draw(0, 10)
+    q, v, a = states.q, states.v * 1e-30, states.a
+    got, exact = robot.compile(("tau", "tau_bound"), "numpy")(q, v, a), robot.enclose(q, v, a).tau
+    assert (got["tau"] + got["tau_bound"] >= exact.lower).all() and (got["tau"] - got["tau_bound"] <= exact.upper).all()
+    assert (got["tau_bound"] <= 1e-9 * np.abs(exact.upper).max(axis=-1, keepdims=True)).all()
+    assert validate(robot, "recursion", n_states=20, sampling="mixed").passed
+    product = float(np.prod([float(x) for x in held]))
+    own = robot.inverse_dynamics(q, v, a).tau_joint
+    assert product == 0.0 or (own != 0.0).any()
 
 
 def test_a_circle_of_followers_is_an_error() -> None:

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 import rttrr_pin
-from rttrr_pin import RandomPayload, Robot
+from rttrr_pin import RandomPayload, Robot, Wrench
 from rttrr_pin.cli import main
 from rttrr_pin.errors import InputError
 from rttrr_pin.exact.adjudication import Deviation
@@ -79,6 +79,58 @@ def test_zeros_that_equal_zeros_are_no_agreement(repository: Path, capsys: pytes
     assert validate(robot, "recursion", n_states=5, payload=RandomPayload("tool")).passed
     assert main(["validate", report(repository, "no_mass")]) == 2
     assert "nothing was compared" in capsys.readouterr().err
+
+
+def still(mass: str = "", arm: str = "", gravity: Any = None, kind: str = "continuous") -> Robot:
+    """A hand on an arm that turns, a foot that is fixed, all on a stand; inertials as they are passed."""
+    body = '<inertial><origin xyz="0.1 0 0.2"/><mass value="2"/><inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial>'
+    inertials = {mass: body, arm: body}
+    links = "".join(
+        f'<link name="{name}">{inertials.get(name, "")}</link>' for name in ("stand", "foot", "arm", "hand")
+    )
+    joints = "".join(
+        f'<joint name="to_{child}" type="{own}"><parent link="{parent}"/><child link="{child}"/><axis xyz="0 1 0"/></joint>'
+        for child, parent, own in (("foot", "stand", "fixed"), ("arm", "stand", kind), ("hand", "arm", "fixed"))
+    )
+    return rttrr_pin.load(f'<robot name="still">{links}{joints}</robot>', gravity)
+
+
+def test_a_root_that_stands_still_gives_nothing_to_compare() -> None:
+    for subject in ("kernel", "recursion", lambda q, v, a: np.zeros(1)):
+        with pytest.raises(
+            InputError, match="no link of robot 'still' but its root, which stands still, has mass: noth"
+        ):
+            validate(still("stand"), subject, n_states=5)
+    assert validate(still("stand", "hand"), "recursion", n_states=5).passed
+    floating = rttrr_pin.load(still("stand").model.urdf, base="floating")
+    assert validate(floating, "recursion", n_states=5).passed
+
+
+def test_zeros_in_every_state_are_no_agreement(tmp_path: Path) -> None:
+    """Of whatever makes them zero: masses that stand still, no gravity and no motion, a payload of nothing."""
+    for robot, subject, payload in (
+        (still("foot"), lambda q, v, a: np.zeros(1), None),
+        (still("foot", gravity=(0, 0, 0)), "recursion", None),
+        (still("", "", kind="fixed"), "recursion", Wrench((0, 0, 0), link="hand")),
+        (still(""), "recursion", RandomPayload("hand", force=0.0, moment=0.0)),
+    ):
+        with pytest.raises(InputError, match="zero in every state, by all programs: nothing was compared; pass"):
+            validate(robot, subject, n_states=5, payload=payload)
+    resting = tmp_path / "rest.csv"
+    resting.write_text("q_to_arm,v_to_arm,a_to_arm,tau_to_arm\n0.5,0,0,0\n0.7,0,0,0\n")
+    with pytest.raises(InputError, match="tau of robot 'still' are zero in every state"):
+        validate(still("arm", gravity=(0, 0, 0)), resting, "recursion")
+    assert validate(still("arm"), "recursion", n_states=5).passed
+    wrong = validate(still("foot"), lambda q, v, a: np.full(1, 1e-9), "recursion", n_states=5)
+    assert not wrong.passed
+
+
+def test_what_is_zero_throughout_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+    result = validate(still("foot"), "recursion", n_states=5)
+    assert result.passed and any(note.startswith("tau, N: zero everywhere") for note in result.notes)
+    one = compare_state(still("foot", gravity=(0, 0, 0)), 0, "recursion")
+    assert any(note.startswith("tau, F, N, f, n: zero everywhere") for note in one.notes)
+    assert not any("zero" in note for note in validate(still("arm"), "recursion", n_states=5).notes)
 
 
 def test_relative_errors_are_of_what_is_not_rounding_itself(repository: Path) -> None:

@@ -10,12 +10,15 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rttrr_pin.core.dynamics import body_of, locked_body
-from rttrr_pin.core.inputs import coordinates
+from rttrr_pin.core.inputs import check_quaternions, coordinates
 from rttrr_pin.core.joint import Joint, JointEffects, Lock
 from rttrr_pin.core.joints import FIXED
-from rttrr_pin.core.model import Link, Model
-from rttrr_pin.core.scalars import FLOAT
-from rttrr_pin.errors import InputError, ShapeError, UnknownNameError
+from rttrr_pin.core.model import UNIVERSE, Link, Model, unused
+from rttrr_pin.core.scalars import EPS, FLOAT
+from rttrr_pin.errors import ShapeError, UnknownNameError
+
+QUATERNION = 8 * EPS
+"""How far the squared length of a locked quaternion may be from 1: other programs read it as angles, of length 1."""
 
 
 def with_body(model: Model, link: Link, parent: int) -> Model:
@@ -34,7 +37,8 @@ def with_locked(model: Model, q: Mapping[str, ArrayLike]) -> Model:
     """The robot with joints that stand still, those that follow them too; links, and their order, stay as they are.
 
     A fixed joint at R, p of the joint's motion at q, where it is at rest: what the recursion yields for
-    q, v = 0, a = 0. Pinocchio's `buildReducedModel`, but that no link disappears in another.
+    q, v = 0, a = 0. Pinocchio's `buildReducedModel`, but that no link disappears in another. Where the joint of a
+    floating base is locked, the base is fixed there.
 
     Args:
         model: the robot.
@@ -42,15 +46,13 @@ def with_locked(model: Model, q: Mapping[str, ArrayLike]) -> Model:
 
     Raises:
         UnknownNameError: a name is of no joint that moves by itself.
-        NumberError, ShapeError: as for coordinates; here there are no batches.
-        InputError: the floating base is no joint of the robot.
+        NumberError, ShapeError: as for coordinates; here there are no batches, and a quaternion that other programs
+            read as angles must have the length 1 to rounding.
     """
     for name in q:
         if name not in model.joint_names:
             raise UnknownNameError("moving joint", name, model.joint_names, _leader(model, name))
     chosen = [joint for joint in model.moving if joint.name in q]
-    if model.floating and model.joints[0] in chosen:
-        raise InputError(f"{model.joints[0].name!r} is the floating base: load the robot with base='fixed'")
     values = coordinates("q", q, chosen)
     if values.ndim != 1:
         raise ShapeError(
@@ -59,6 +61,7 @@ def with_locked(model: Model, q: Mapping[str, ArrayLike]) -> Model:
             got=values.shape,
             wanted=f"({values.shape[-1]},)",
         )
+    check_quaternions(values, chosen, QUATERNION)
     begins = accumulate((joint.nq for joint in chosen), initial=0)
     locks = {own.name: tuple(values[at : at + own.nq].tolist()) for at, own in zip(begins, chosen, strict=False)}
 
@@ -66,7 +69,11 @@ def with_locked(model: Model, q: Mapping[str, ArrayLike]) -> Model:
         leader = joint if joint.mimic is None else model.joints[joint.mimic.joint]
         return _locked(Lock(joint, locks[leader.name])) if leader.name in locks else joint
 
-    return replace(model, joints=tuple(locked(joint) for joint in model.joints)) if locks else model
+    if not locks:
+        return model
+    floating = model.floating and model.joints[0].name not in locks
+    root = model.root if floating == model.floating else Link(unused(UNIVERSE, model.link_names))
+    return replace(model, root=root, joints=tuple(locked(joint) for joint in model.joints), floating=floating)
 
 
 def _locked(lock: Lock) -> Joint:

@@ -36,6 +36,12 @@ effects hardly round: each is a kind of its own."""
 GRAVITY = 10.0
 """Of this size are the accelerations that are drawn, also where there is no field [m/s^2]."""
 
+SHOWN, PART = 6, 0.1
+"""Of parameters that belong together so many are named at most, each of this part of the largest at least."""
+
+DOUBT = 100.0
+"""A column is told whose distance is within this factor of the tolerance."""
+
 Y_OVER = 3
 """Rows for each column: random states tell the rank of a robot with probability 1, and well if there are some more."""
 
@@ -51,21 +57,29 @@ class BaseParameters:
             that no motion tells.
         tolerance: a column depends on those before it if it is no farther from their span, relative to the largest
             column of its kind (masses, first moments, tensors; a joint's effect is compared with its own column).
-        farthest_dependent: the largest such distance of a column that was found to depend on those before.
-        nearest_independent: the smallest of one that was not; the rank is certain where both are far apart.
+        distances: that of each column, (parameters,).
     """
 
     names: tuple[str, ...]
     independent: tuple[int, ...]
     map: Array
     tolerance: float
-    farthest_dependent: float
-    nearest_independent: float
+    distances: Array
 
     @property
     def rank(self) -> int:
         """The number of base parameters."""
         return len(self.independent)
+
+    @property
+    def farthest_dependent(self) -> float:
+        """The largest distance of a column that was found to depend on those before it."""
+        return float(np.delete(self.distances, self.independent).max(initial=0.0))
+
+    @property
+    def nearest_independent(self) -> float:
+        """The smallest of one that was not; the rank is certain where both are far apart."""
+        return float(self.distances[list(self.independent)].min(initial=math.inf))
 
     @property
     def expressions(self) -> tuple[str, ...]:
@@ -104,11 +118,53 @@ class BaseParameters:
         sigma = np.linalg.svd(W / norms if scaled else W, compute_uv=False)
         return float(sigma[0] / sigma[-1]) if sigma[-1] > 0.0 else math.inf
 
+    def advice(self, Y: ArrayLike, most: float = 1000.0) -> tuple[str, ...]:
+        """Which base parameters a trajectory hardly tells, and what to do about each; empty where it tells all.
+
+        Those that belong together are the large components of a singular vector of the stacked regressor, its columns
+        divided by their norms (Belsley, Kuh and Welsch, "Regression diagnostics", 1980).
+
+        Args:
+            Y: `Robot.regressor(q, v, a)` along the trajectory, (..., nv, parameters).
+            most: singular values of less than the largest divided by it are told.
+        """
+        W = self.regressor(Y).reshape(-1, self.rank)
+        norms = np.linalg.norm(W, axis=0)
+        shown, names = np.flatnonzero(norms), [self.names[k] for k in self.independent]
+        advice = [
+            f"{names[k]} does not show: {_remedy([names[k]])}, or leave it out" for k in np.flatnonzero(norms == 0)
+        ]
+        if len(W) < self.rank:
+            return (*advice, f"{len(W)} equations for {self.rank} parameters: add states")
+        _, sigma, directions = np.linalg.svd(W[:, shown] / norms[shown], full_matrices=False)
+        for own, direction in zip(sigma[::-1], np.abs(directions[::-1]), strict=True):
+            if own * most >= sigma[0]:
+                break
+            largest = [k for k in np.argsort(-direction)[:SHOWN] if direction[k] >= PART * direction.max()]
+            together = [names[shown[k]] for k in largest]
+            times = f"{sigma[0] / own:.2g} times" if own else "without limit"
+            advice.append(
+                f"{_listed(together)} are nearly dependent, and errors of tau multiplied {times} in what tells them "
+                f"apart: {_remedy(together)}, or keep {together[0]} at a value that is known"
+            )
+        return tuple(advice)
+
     def summary(self) -> str:
         """The base parameters as text, one a line."""
         count = f"{self.rank} base parameters of {len(self.names)}"
         distances = f"dependent to {self.farthest_dependent:.2g}, independent from {self.nearest_independent:.2g}"
-        return "\n".join([f"{count}; columns {distances} (tolerance {self.tolerance:.2g})", *self.expressions])
+        first = f"{count}; columns {distances} (tolerance {self.tolerance:.2g})"
+        return "\n".join([first, *self._doubts(), *self.expressions])
+
+    def _doubts(self) -> list[str]:
+        """The columns so near the tolerance that another one would decide otherwise."""
+        near = (self.distances > self.tolerance / DOUBT) & (self.distances < self.tolerance * DOUBT)
+        return [
+            f"{self.names[k]} is {'nearly ' if k in self.independent else ''}dependent on those before it (to "
+            f"{self.distances[k]:.2g}): nearly no motion tells it; pass a tolerance "
+            f"{'above that to leave it out' if k in self.independent else 'below that to keep it'}"
+            for k in np.flatnonzero(near).tolist()
+        ]
 
     def to_dict(self) -> dict[str, Any]:
         """The same as lists, for JSON."""
@@ -205,14 +261,12 @@ def base_parameters(names: Sequence[str], Y: Array, tolerance: float) -> BasePar
     B = np.linalg.solve(projected[:, kept], projected)
     B[np.abs(B) * norms[kept, None] <= tolerance * scale] = 0.0
     B[:, kept] = np.eye(len(kept))
-    dependent = np.delete(distances, kept)
     return BaseParameters(
         names=tuple(names),
         independent=tuple(kept),
         map=np.asarray(B, dtype=np.float64),
         tolerance=tolerance,
-        farthest_dependent=float(dependent.max(initial=0.0)),
-        nearest_independent=float(distances[kept].min(initial=math.inf)),
+        distances=distances,
     )
 
 
@@ -224,6 +278,24 @@ def _of_kind(names: Sequence[str], norms: Array) -> Array:
     for kind, norm in zip(kinds, norms.tolist(), strict=True):
         largest[kind] = max(norm, largest.get(kind, 0.0))
     return np.array([largest[kind] or 1.0 for kind in kinds])
+
+
+def _remedy(names: Sequence[str]) -> str:
+    """What motion would tell parameters."""
+    places: dict[str, list[str]] = {"links": [], "joints": []}
+    for name in names:
+        parameter, _, place = name.partition(" of ")
+        of = places["joints" if parameter in EFFECTS else "links"]
+        if place not in of:
+            of.append(place)
+    moved = [f"turn {_listed(places['links'])} more, also faster and about other axes"] if places["links"] else []
+    moved += [f"let {_listed(places['joints'])} run at more rates and accelerations"] if places["joints"] else []
+    return " and ".join(moved)
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Names as a sentence has them."""
+    return " and ".join(filter(None, [", ".join(names[:-1]), names[-1]]))
 
 
 def _factor(x: float) -> str:

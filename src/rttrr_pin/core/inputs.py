@@ -150,7 +150,7 @@ def finite(name: str, array: Array, labels: Sequence[str] = ()) -> Array:
     )
 
 
-def check_quaternions(q: Array, joints: Sequence[Joint]) -> None:
+def check_quaternions(q: Array, joints: Sequence[Joint], tolerance: float = UNIT_QUATERNION) -> None:
     """The four numbers of a quaternion are a rotation only if their length is 1.
 
     Raises:
@@ -162,13 +162,13 @@ def check_quaternions(q: Array, joints: Sequence[Joint]) -> None:
             own = slice(first, first + 4)
             with np.errstate(over="ignore"):
                 squares = (q[..., own] ** 2).sum(axis=-1)
-            bad = np.argwhere(np.abs(squares - 1.0) > UNIT_QUATERNION)
+            bad = np.argwhere(np.abs(squares - 1.0) > tolerance)
             if not len(bad):
                 continue
             index = tuple(int(k) for k in bad[0])
             raise NumberError(
                 f"q{list(index) if index else ''}, joint {joint.name!r}, has a quaternion (x, y, z, w) of length "
-                f"{float(squares[index]) ** 0.5:.15g}, expected 1: divide it by its length (the last of its four "
+                f"{float(squares[index]) ** 0.5:.17g}, expected 1: divide it by its length (the last of its four "
                 "numbers is the real part)",
                 name="q",
                 joint=joint.name,

@@ -7,7 +7,7 @@ joint carries it and its inertia does not enter the equations of motion.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from itertools import accumulate
@@ -80,6 +80,12 @@ ROOT_JOINT, UNIVERSE = "root_joint", "universe"
 """Pinocchio's names for the joint of a floating base, and for what it floats in."""
 
 
+def unused(name: str, taken: Collection[str]) -> str:
+    """A name, with _2, _3, ... behind it where it is taken."""
+    numbered = (name, *(f"{name}_{n}" for n in range(2, len(taken) + 3)))
+    return next(one for one in numbered if one not in taken)
+
+
 @dataclass(frozen=True, eq=False)
 class Model:
     """A tree of links and joints; joint i carries link i.
@@ -91,7 +97,7 @@ class Model:
         joints: `joints[i]` carries `links[i]`.
         gravity: the gravity field in the base frame, (3,) [m/s^2]: a free body accelerates by it.
         document: the file that the model was read from (`urdf/document.py`); None where it was made from numbers.
-        floating: whether `with_floating_base` made it.
+        floating: whether `with_floating_base` made it, and its base is not locked.
         notes: what its source says beyond this, or was not asked.
     """
 
@@ -218,9 +224,7 @@ class Model:
         are Pinocchio's: position and quaternion (x, y, z, w) of the root link in the world, its rates the twist in the
         root link's frame, linear before angular.
         """
-        taken = {joint.name for joint in self.joints}
-        numbered = (ROOT_JOINT, *(f"{ROOT_JOINT}_{n}" for n in range(2, len(taken) + 3)))
-        base = Joint(next(name for name in numbered if name not in taken), FLOATING)
+        base = Joint(unused(ROOT_JOINT, {joint.name for joint in self.joints}), FLOATING)
         moved = [
             replace(
                 joint, parent=joint.parent + 1, mimic=joint.mimic and replace(joint.mimic, joint=joint.mimic.joint + 1)

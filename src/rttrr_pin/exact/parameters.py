@@ -120,7 +120,10 @@ def exact_parameters(model: Model, parameters: Literal["read", "text"]) -> Exact
         raise InputError(
             f"robot {model.name!r} was loaded from an object, which has doubles and no decimals: pass parameters='read'"
         )
-    for difference in _differences(model, model_of(document)):
+    read = model_of(document)
+    if any(joint.name not in document.joints for joint in model.joints):  # of the base, locked or not
+        read = read.with_floating_base()
+    for difference in _differences(model, read):
         raise InputError(
             f"{difference} of robot {model.name!r} is not what its file says: the model was altered since it was "
             "read; pass parameters='doubles'"
@@ -153,8 +156,6 @@ def _joint(joint: Joint, document: UrdfDocument, exact: Exact) -> Joint:
 
 def _differences(model: Model, read: Model) -> Iterator[str]:
     """The links and joints of a model that are not those of its file."""
-    if model.floating:
-        read = read.with_floating_base()
     links, joints = {x.name: x for x in read.links}, {x.name: x for x in read.joints}
     for link in model.links:
         if not _same(link, links.get(link.name), "mass", "com", "inertia"):

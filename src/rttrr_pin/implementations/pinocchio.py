@@ -25,7 +25,7 @@ body, whichever link of it they hang on, and none if the body is the universe: i
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -99,12 +99,7 @@ class Pinocchio:
         axes = snapped_axes(model, self.pin_model)
         joints = (replace(joint, axis=axes.get(i, joint.axis)) for i, joint in enumerate(model.joints))
         self.built = replace(model, joints=tuple(joints)) if axes else model
-        snapped = (
-            f"Pinocchio takes the axis of joint {model.joints[i].name!r} as {shown(axis)}, the file says "
-            f"{shown(model.joints[i].axis)}: what that changes is allowed for"
-            for i, axis in axes.items()
-        )
-        self.notes = (*snapped, *([said] if said else ()))
+        self.notes = tuple(filter(None, (_snapped(model, axes), said)))
         self.joints = pin_joints(model, self.pin_model)
         for joint in self.joints:
             self.pin_model.armature[joint.v] = joint.joint.effects.armature
@@ -246,6 +241,15 @@ class Pinocchio:
         return out
 
 
+def _snapped(model: Model, axes: Mapping[int, Array]) -> str:
+    """Which axes Pinocchio took as x, y or z, in one sentence; empty where there is none."""
+    each = [
+        f"the axis of joint {model.joints[i].name!r} as {shown(axis)}, the file says {shown(model.joints[i].axis)}"
+        for i, axis in axes.items()
+    ]
+    return f"Pinocchio takes {'; '.join(each)}: what that changes is allowed for" if each else ""
+
+
 def _check_memory(nv: int) -> None:
     """Say before it is tried that Pinocchio's data does not fit in memory.
 
@@ -256,7 +260,8 @@ def _check_memory(nv: int) -> None:
     if needed > there:
         raise ImplementationError(
             f"Pinocchio's data grows with the cube of the degrees of freedom: {needed / 1e9:,.0f} GB for the {nv:,} of "
-            f"this robot, on a machine with {there / 1e9:,.0f} GB; compare with --reference recursion instead"
+            f"this robot, on a machine with {there / 1e9:,.0f} GB; pass reference='recursion' instead",
+            {"reference='recursion'": "--reference recursion"},
         )
 
 

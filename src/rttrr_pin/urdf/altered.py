@@ -5,7 +5,6 @@ Everything else in the text stays as it stands.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from dataclasses import replace
 from typing import Any
 
@@ -42,16 +41,24 @@ def with_body(document: Document, link: Link, joint: Joint, parent: str) -> Docu
     )
 
 
-def with_fixed(document: Document, joints: Iterable[Joint]) -> Document:
-    """A document in whose text joints are fixed at their placements; links and joints still are the file's."""
+def with_fixed(document: Document, model: Model) -> Document:
+    """A document in whose text locked joints are fixed at their placements; links and joints still are the file's.
+
+    No text has the joint of a floating base: where it is locked, it is put in, with a link to stand on.
+    """
     assert isinstance(document, UrdfDocument)
-    placed = {joint.name: joint for joint in joints}
     root = _parsed(document.text.encode())
     prefix = _prefix(root)
-    for element in root.iterfind(f"{prefix}joint"):
-        joint = placed.get(element.get("name"))
-        if joint is None:
+    elements = {element.get("name"): element for element in root.iterfind(f"{prefix}joint")}
+    for joint, link in zip(model.joints, model.links, strict=True):
+        if joint.lock is None:
             continue
+        if joint.name not in elements:
+            etree.SubElement(root, f"{prefix}link", name=model.root.name)
+            elements[joint.name] = etree.SubElement(root, f"{prefix}joint", name=joint.name)
+            for tag, name in (("parent", model.root.name), ("child", link.name)):
+                etree.SubElement(elements[joint.name], f"{prefix}{tag}", link=name)
+        element = elements[joint.name]
         element.set("type", "fixed")
         for child in [child for tag in OF_MOVING for child in element.iterfind(prefix + tag)]:
             element.remove(child)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
@@ -16,6 +17,9 @@ from rttrr_pin.errors import InputError, UrdfError, shortened
 from rttrr_pin.urdf.document import NO_INERTIAL, UrdfDocument, UrdfJoint, UrdfLink
 from rttrr_pin.urdf.parser import read_document
 from rttrr_pin.urdf.sources import AS_IT_STANDS, AnySource, Reading, find
+
+SMALLEST, LARGEST = sys.float_info.min, sys.float_info.max
+"""Between them a product, rounded once, is right to half an eps; below, digits are lost, or all of it."""
 
 
 def read_urdf(source: AnySource, reading: Reading = AS_IT_STANDS) -> Model:
@@ -95,10 +99,10 @@ def _mimic(joint: UrdfJoint, document: UrdfDocument, index: dict[str, int]) -> M
     leader, multiplier, offset, mimics = document.followed(joint, lambda number: Fraction(float(number)))
     if not mimics:
         return None
-    try:
-        return Mimic(index[leader.name], float(multiplier), float(offset), rounded=mimics > 1)
-    except OverflowError:
-        raise InputError("a chain of mimics has a multiplier or an offset that float64 cannot hold") from None
+    numbers = multiplier, offset
+    if mimics > 1 and not all(x == 0 or SMALLEST <= abs(x) <= LARGEST for x in numbers):
+        raise InputError("a chain of mimics has a multiplier or an offset that float64 does not hold to its precision")
+    return Mimic(index[leader.name], *map(float, numbers), rounded=mimics > 1)
 
 
 def _joint(joint: UrdfJoint, parent: int, mimic: Mimic | None) -> Joint:

@@ -151,6 +151,12 @@ class Comparison:
         self.rows = tuple(Row(*labels) for labels in _labels(model) if labels[0] in self.quantities)
         self.whole = {quantity: Worst() for quantity in self.quantities}
         self._carriers = carriers(model)
+        self._zero = {row.quantity for row in self.rows}
+
+    @property
+    def zero(self) -> set[str]:
+        """The quantities that are zero everywhere, in every state so far, by both programs."""
+        return set(self._zero)
 
     @property
     def passed(self) -> bool:
@@ -199,6 +205,8 @@ class Comparison:
         allowance, other = (_allowance(batch, side) for side in (subject, reference))
         for key in self.quantities:
             x, y = subject.values[key], reference.values[key]
+            if x.any() or y.any():
+                self._zero.discard(key)
             errors = np.abs(x - y) if key == "tau" else norm(x - y)
             lengths = self._sizes_of_tau(batch, subject, reference) if key == "tau" else norm(y)
             # A result that is not finite is as far off as can be: an infinite error, of a size that excuses nothing.

@@ -9,6 +9,7 @@ import numpy as np
 
 from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.core.model import Model
+from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.errors import InputError
 from rttrr_pin.exact.adjudication import Adjudication, Assessment, Deviation, in_order, nearest
 from rttrr_pin.exact.enclosures import Enclosures, enclose
@@ -74,9 +75,30 @@ class Run:
 
     @property
     def notes(self) -> tuple[str, ...]:
-        """What a reader of the verdict must know: of how the robot was read, and of each program."""
+        """What a reader of the verdict must know: of how the robot was read, of each program, of what was compared."""
         of_programs = (note for program in self.programs for note in getattr(program, "notes", ()))
-        return (*(note.text for note in self.states.sampler.model.notes), *of_programs)
+        zero = ", ".join(key for key in QUANTITIES if key in self.zero)
+        compared = (f"{zero}: zero everywhere by all programs, so that nothing was compared there",) if zero else ()
+        return (*(note.text for note in self.states.sampler.model.notes), *of_programs, *compared)
+
+    @property
+    def zero(self) -> set[str]:
+        """The quantities that are zero in all that was compared."""
+        seen = {row.quantity for one in self.comparisons for row in one.rows if row.quantity not in one.zero}
+        return {row.quantity for one in self.comparisons for row in one.rows} - seen
+
+    def check_compared(self) -> None:
+        """Zeros that equal zeros are no agreement.
+
+        Raises:
+            InputError: nothing else was seen.
+        """
+        if all(row.quantity in self.zero for one in self.comparisons for row in one.rows):
+            raise InputError(
+                f"{', '.join(key for key in QUANTITIES if key in self.zero)} of robot "
+                f"{self.states.sampler.model.name!r} are zero in every state, by all programs: nothing was compared; "
+                "pass gravity, a payload or states in which a force acts"
+            )
 
     @property
     def subject(self) -> Implementation:
@@ -156,11 +178,12 @@ def true_parameters(model: Model) -> Parameters:
 
 
 def _check_inertia(model: Model, sampler: Sampler) -> None:
-    """Zeros that equal zeros are no agreement."""
-    inertial = any(link.mass or link.inertia.any() for link in (model.root, *model.links))
+    """What is certain to give zeros that equal zeros is said before anything is computed."""
+    inertial = any(link.mass or link.inertia.any() for link in model.links)
     resisted = any(joint.effects != JointEffects() for joint in model.joints)
     if not (inertial or resisted or sampler.payload is not None):
-        raise InputError(f"no link of robot {model.name!r} has mass: nothing was compared")
+        root = " but its root, which stands still," if model.root.mass or model.root.inertia.any() else ""
+        raise InputError(f"no link of robot {model.name!r}{root} has mass: nothing was compared")
 
 
 def _check_overflow(batch: Batch, program: Implementation, result: Evaluation) -> None:

@@ -175,6 +175,7 @@ def validate(
     run = Run.of(robot, subject, reference, seed, sampling, payload)
     for batch in run.states.blocks(n_states, progress):
         run.add(batch)
+    run.check_compared()
     chosen = (run.states.batch(state, 1) for state in run.ranking.chosen())
     adjudications = tuple(run.adjudicate(batch, run.evaluate(batch)) for batch in chosen)
     return Validation(

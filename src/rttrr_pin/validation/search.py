@@ -134,6 +134,7 @@ def search_worst_state(
         updating="deferred",
         rng=rng,
     )
+    run.check_compared()
     batch = sampler.made_of(np.atleast_2d(optimum.x))
     reached = ratios(batch)[:, 0]
     pairs = zip(run.references, run.comparisons, strict=True)
