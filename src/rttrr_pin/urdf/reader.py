@@ -102,7 +102,7 @@ def _mimic(joint: UrdfJoint, document: UrdfDocument, index: dict[str, int]) -> M
     numbers = multiplier, offset
     if mimics > 1 and not all(x == 0 or SMALLEST <= abs(x) <= LARGEST for x in numbers):
         raise InputError("a chain of mimics has a multiplier or an offset that float64 does not hold to its precision")
-    return Mimic(index[leader.name], *map(float, numbers), rounded=mimics > 1)
+    return Mimic(index[leader.name], float(multiplier), float(offset), rounded=mimics > 1)
 
 
 def _joint(joint: UrdfJoint, parent: int, mimic: Mimic | None) -> Joint:
