@@ -21,7 +21,7 @@ from rttrr_pin.inspection.exact import (
     shape_of,
 )
 from rttrr_pin.urdf.decimals import Number, text_of
-from rttrr_pin.urdf.document import Placement, UrdfInertial, symmetric
+from rttrr_pin.urdf.inertial import Placement, UrdfInertial, symmetric
 from support.inspected import ENTRIES, arm, diagonal, inertial
 from support.serial_chains import EXAMPLES
 from support.tolerances import MODEL

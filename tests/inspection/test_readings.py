@@ -18,7 +18,7 @@ from rttrr_pin.inspection.causes import Cause, cause_of
 from rttrr_pin.inspection.checks import Subject
 from rttrr_pin.inspection.readings import MASS_UNITS, ORDERS, TENSOR_UNITS
 from rttrr_pin.inspection.run import inspect_document
-from rttrr_pin.urdf.document import ENTRIES
+from rttrr_pin.urdf.inertial import ENTRIES
 from rttrr_pin.urdf.parser import read_document
 from support.inspected import arm, inertial, shape, tip
 

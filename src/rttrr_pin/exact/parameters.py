@@ -23,15 +23,8 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import Arithmetic
 from rttrr_pin.errors import InputError
 from rttrr_pin.urdf.decimals import Number, NumberList
-from rttrr_pin.urdf.document import (
-    NO_INERTIAL,
-    ZEROS,
-    Placement,
-    UrdfDocument,
-    UrdfInertial,
-    UrdfJoint,
-    rows_of_quaternion,
-)
+from rttrr_pin.urdf.document import UrdfDocument, UrdfJoint
+from rttrr_pin.urdf.inertial import NO_INERTIAL, ZEROS, Placement, UrdfInertial, rows_of_quaternion
 from rttrr_pin.urdf.reader import model_of
 
 InverseRoot = Callable[[Fraction], Scalar]

@@ -9,7 +9,8 @@ import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.inspection.exact import Shape, shape
-from rttrr_pin.urdf.document import NO_INERTIAL, UrdfDocument
+from rttrr_pin.urdf.document import UrdfDocument
+from rttrr_pin.urdf.inertial import NO_INERTIAL
 
 ROUNDING = 1e-14
 """Of the largest: what is smaller is what diagonalising leaves of a zero. For show; verdicts are decided exactly."""

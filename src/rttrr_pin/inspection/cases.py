@@ -12,7 +12,8 @@ from rttrr_pin.inspection.bodies import principal, semi_axes
 from rttrr_pin.inspection.checks import Subject
 from rttrr_pin.inspection.exact import rank
 from rttrr_pin.inspection.shapes import Filled, Looks
-from rttrr_pin.urdf.document import UrdfInertial, UrdfLink
+from rttrr_pin.urdf.document import UrdfLink
+from rttrr_pin.urdf.inertial import UrdfInertial
 
 LARGEST_GYRATION = 1.5
 """Radius of gyration over the distance of the farthest point drawn. No mass inside the drawing gives more than 1."""

@@ -17,7 +17,7 @@ from rttrr_pin.inspection.cases import DENSITIES, FAR, Case, distance, ellipsoid
 from rttrr_pin.inspection.checks import Edit
 from rttrr_pin.inspection.readings import READINGS, Reading, Variant, unit
 from rttrr_pin.inspection.shapes import Filled
-from rttrr_pin.urdf.document import ENTRIES
+from rttrr_pin.urdf.inertial import ENTRIES
 
 NEAR, EXACTLY, SAME = 0.13, 1e-3, 0.02
 """Distances |I - solid| / |solid|: a reading is a hull's tensor; a box's to the digits; two readings are one tensor."""

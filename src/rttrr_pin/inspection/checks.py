@@ -8,7 +8,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from rttrr_pin.inspection.shapes import Looks, looks_of
-from rttrr_pin.urdf.document import UrdfDocument, UrdfInertial, UrdfJoint, UrdfLink
+from rttrr_pin.urdf.document import UrdfDocument, UrdfJoint, UrdfLink
+from rttrr_pin.urdf.inertial import UrdfInertial
 
 
 class Severity(enum.StrEnum):

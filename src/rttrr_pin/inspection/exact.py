@@ -20,7 +20,7 @@ from itertools import combinations
 
 import numpy as np
 
-from rttrr_pin.urdf.document import ENTRIES, UrdfInertial, symmetric
+from rttrr_pin.urdf.inertial import ENTRIES, UrdfInertial, symmetric
 
 Matrix = tuple[tuple[Fraction, ...], ...]
 

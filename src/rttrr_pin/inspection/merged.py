@@ -10,7 +10,8 @@ import numpy as np
 from rttrr_pin.core.algebra import Vector
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.inertia import point_tensor
-from rttrr_pin.urdf.document import NO_INERTIAL, UrdfDocument
+from rttrr_pin.urdf.document import UrdfDocument
+from rttrr_pin.urdf.inertial import NO_INERTIAL
 
 
 @dataclass(frozen=True, eq=False)

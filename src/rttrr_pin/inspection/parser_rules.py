@@ -16,7 +16,8 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.inspection.bodies import principal
 from rttrr_pin.inspection.merged import anchored, merged_links
 from rttrr_pin.urdf.decimals import Number, NumberList
-from rttrr_pin.urdf.document import Placement, UrdfDocument, UrdfInertial, UrdfJoint
+from rttrr_pin.urdf.document import UrdfDocument, UrdfJoint
+from rttrr_pin.urdf.inertial import Placement, UrdfInertial
 
 EPS = float(np.finfo(np.float64).eps)
 

@@ -10,7 +10,7 @@ from rttrr_pin.inspection.checks import Edit, Observation, Severity, Subject, ch
 from rttrr_pin.inspection.exact import Shape, is_positive, nearest_possible, rank, shape
 from rttrr_pin.inspection.merged import merged_links
 from rttrr_pin.urdf.decimals import text_of
-from rttrr_pin.urdf.document import NO_INERTIAL, UrdfInertial
+from rttrr_pin.urdf.inertial import NO_INERTIAL, UrdfInertial
 
 
 @check("P101", Severity.ERROR)

@@ -13,7 +13,7 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.inspection.cases import Case, distance
 from rttrr_pin.inspection.exact import DIAGONAL, nearest_possible
-from rttrr_pin.urdf.document import ENTRIES, symmetric
+from rttrr_pin.urdf.inertial import ENTRIES, symmetric
 
 DUST = 1e-12, 1e-14
 """Of the largest entry; and of the mass, in m^2, a radius of gyration of 100 nm: rounding of zero."""

@@ -10,8 +10,9 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 
 from rttrr_pin.inspection import parser_rules as rules
-from rttrr_pin.urdf.document import UrdfDocument, UrdfInertial, UrdfJoint
+from rttrr_pin.urdf.document import UrdfDocument, UrdfJoint
 from rttrr_pin.urdf.faults import Fault
+from rttrr_pin.urdf.inertial import UrdfInertial
 
 Places = Callable[[UrdfDocument], Iterable[str]]
 

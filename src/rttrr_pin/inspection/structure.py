@@ -15,7 +15,8 @@ import numpy as np
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.inspection.bodies import principal
 from rttrr_pin.inspection.checks import Observation, Severity, Subject, check
-from rttrr_pin.urdf.document import UrdfInertial, UrdfJoint, UrdfLink
+from rttrr_pin.urdf.document import UrdfJoint, UrdfLink
+from rttrr_pin.urdf.inertial import UrdfInertial
 
 ALIKE, SLIGHT = 1e-3, 1e-2
 """Relative: CAD programs write three digits at least, and mirrored parts have the same ones; a screw more is one

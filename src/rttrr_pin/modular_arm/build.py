@@ -11,7 +11,7 @@ from xml.etree import ElementTree as ET
 from rttrr_pin.core.solids import Part, RigidBody, Triple, combine
 from rttrr_pin.errors import InputError
 from rttrr_pin.modular_arm.modules import BASE, BASE_EXIT, CODES, MATERIALS, MODULES, TOOL, TOOL_ENTRY, Module
-from rttrr_pin.urdf.document import ENTRIES
+from rttrr_pin.urdf.inertial import ENTRIES
 
 
 @dataclass(frozen=True)

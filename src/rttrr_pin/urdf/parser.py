@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import re
 from collections import Counter
-from collections.abc import Mapping
 from typing import Any
 
 from lxml import etree
@@ -21,35 +20,20 @@ from lxml import etree
 from rttrr_pin.core.joints import JOINT_TYPES, JointType
 from rttrr_pin.errors import UrdfError, shortened
 from rttrr_pin.urdf.decimals import Number, NumberList
-from rttrr_pin.urdf.document import (
-    ENTRIES,
-    Placement,
-    UrdfDocument,
-    UrdfInertial,
-    UrdfJoint,
-    UrdfLink,
-    UrdfMimic,
-    UrdfShape,
-    UrdfTransmission,
-)
+from rttrr_pin.urdf.document import UrdfDocument, UrdfJoint, UrdfLink, UrdfMimic, UrdfShape
 from rttrr_pin.urdf.elements import Element, parse_xml
 from rttrr_pin.urdf.faults import Log
+from rttrr_pin.urdf.inertial import ENTRIES, Placement, UrdfInertial
 from rttrr_pin.urdf.limits import has_direction, read_limit
 from rttrr_pin.urdf.sources import AS_IT_STANDS, AnySource, Reading, find
 from rttrr_pin.urdf.tree import check_mimics, check_tree
+from rttrr_pin.urdf.unused import check_asked, transmissions_of
 from rttrr_pin.urdf.vocabulary import ATTRIBUTES, check_words, not_modelled
 
 SUPPORTED = tuple(JOINT_TYPES)
 
 VERSIONS = ((1, 0), (1, 1), (1, 2))
 """Of the format: 1.1 brought quat_xyzw, 1.2 limits of acceleration, deceleration and jerk."""
-
-ASKED = {
-    "dynamics": ("damping", "friction"),
-    "calibration": ("rising", "falling"),
-    "safety_controller": ("k_velocity", "k_position", "soft_lower_limit", "soft_upper_limit"),
-}
-"""Elements of joints in which urdfdom wants numbers: one of those of <dynamics>, k_velocity, and all that are there."""
 
 
 def read_document(source: AnySource, reading: Reading = AS_IT_STANDS, tolerant: bool = False) -> UrdfDocument:
@@ -84,8 +68,8 @@ def read_document(source: AnySource, reading: Reading = AS_IT_STANDS, tolerant: 
     check_tree(read_links, read_joints, robot, joints)
     check_mimics(read_joints, joints)
     not_modelled(root, log)
-    _check_asked(robot, joints)
-    transmissions = _transmissions(robot, joints)
+    check_asked(robot, joints)
+    transmissions = transmissions_of(robot, joints)
     if not tolerant:
         log.check()
     file_text = file.text.decode("utf-8-sig")
@@ -304,41 +288,3 @@ def _mimic(joint: Element, joint_type: JointType) -> UrdfMimic | None:
         return UrdfMimic(words.get("joint", ""), Number(words.get("multiplier", "1")), Number(words.get("offset", "0")))
     multiplier, offset = mimic.number("multiplier", "1", "1"), mimic.number("offset", "0")
     return UrdfMimic(mimic.text("joint"), multiplier, offset)
-
-
-def _transmissions(robot: Element, joints: Mapping[str, Element]) -> tuple[UrdfTransmission, ...]:
-    """The transmissions; whether their joints exist, and each has an actuator of its own."""
-    read, drivers = [], Counter[str]()
-    for element in robot.children("transmission"):
-        xml, first = element.xml, {tag: element.xml.find(tag) for tag in ("type", "joint", "actuator")}
-        type_name = xml.get("type", "") if first["type"] is None else (first["type"].text or "")
-        joint, actuator = ("" if first[tag] is None else first[tag].get("name", "") for tag in ("joint", "actuator"))
-        transmission = UrdfTransmission(xml.get("name", ""), element.line, type_name.strip(), joint, actuator)
-        drivers[actuator] += 1
-        what = f"<transmission> {transmission.name!r}"
-        for target in (each.get("name", "") for each in xml.findall("joint")):
-            if target not in joints:
-                fix = element.nearest(target, joints)
-                element.note("transmission", f"{what} drives joint {target!r}, which does not exist: {fix}")
-        if actuator and drivers[actuator] == 2:
-            element.note("transmission", f"{what} has the actuator {actuator!r} of another one: give each its own")
-        read.append(transmission)
-    return tuple(read)
-
-
-def _check_asked(robot: Element, joints: Mapping[str, Element]) -> None:
-    """What urdfdom, and so Pinocchio, Gazebo and KDL, refuse although no number of the model depends on it."""
-    materials = Counter(material.text("name") for material in robot.children("material"))
-    for name, count in materials.items():
-        if name and count > 1:
-            robot.note("material", f"<material> {shortened(name)!r} stands {count} times: give each its own name")
-    for joint in joints.values():
-        for tag, keys in ASKED.items():
-            for element in joint.children(tag)[:1]:
-                written = [key for key in keys if key in element.xml.attrib]
-                needed = written + [key for key in ("k_velocity",) if key in keys and key not in written]
-                problem = next(filter(None, map(element.problem, needed)), "") if tag != "dynamics" else ""
-                if tag == "dynamics" and not written:
-                    problem = "<dynamics> has neither damping nor friction"
-                if problem:
-                    element.note("asked", problem)

@@ -14,7 +14,8 @@ from rttrr_pin.core.joint import Joint, JointEffects, Limits, Mimic
 from rttrr_pin.core.joints import JOINT_TYPES, JointType
 from rttrr_pin.core.model import Link, Model, Note
 from rttrr_pin.errors import InputError, UrdfError, shortened
-from rttrr_pin.urdf.document import NO_INERTIAL, UrdfDocument, UrdfJoint, UrdfLink
+from rttrr_pin.urdf.document import UrdfDocument, UrdfJoint, UrdfLink
+from rttrr_pin.urdf.inertial import NO_INERTIAL
 from rttrr_pin.urdf.parser import read_document
 from rttrr_pin.urdf.sources import AS_IT_STANDS, AnySource, Reading, find
 

@@ -16,7 +16,7 @@ from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints import CONTINUOUS, JointType
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.solids import angles_of
-from rttrr_pin.urdf.document import ENTRIES
+from rttrr_pin.urdf.inertial import ENTRIES
 from rttrr_pin.urdf.vocabulary import ATTRIBUTES
 
 
