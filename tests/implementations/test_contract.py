@@ -7,6 +7,8 @@ import pytest
 
 from rttrr_pin import RandomPayload, Robot, load, validate
 from rttrr_pin.core.wrench import QUANTITIES
+from rttrr_pin.exact import enclose
+from rttrr_pin.exact.adjudication import nearest
 from rttrr_pin.implementations import Batch, Implementation, default_allowance, make_implementation, names
 from rttrr_pin.validation.sampling import Sampler
 
@@ -53,3 +55,15 @@ def test_a_state_has_the_same_bits_alone_and_in_a_batch(implementation: Implemen
         alone = implementation.evaluate(Batch(robot.model, batch.q[part], batch.v[part], batch.a[part], first=k))
         for key in implementation.quantities:
             assert np.array_equal(alone.values[key][0], together.values[key][k]), key
+
+
+@pytest.mark.parametrize("state", [78_951, 12_954, 73_719])  # at the first the kernel is beyond the recursion's bound
+def test_true_values_lie_within_the_allowance(implementation: Implementation, robot: Robot, state: int) -> None:
+    batch = Sampler(robot.model, payload=RandomPayload(robot.link_names[-1])).draw(state, 1)
+    enclosures = enclose(robot.model, batch.q, batch.v, batch.a, batch.loads, "doubles")
+    result = implementation.evaluate(batch)
+    allowance = result.allowance or default_allowance(batch)
+    for key, true in nearest(enclosures, result.values).items():
+        error = result.values[key] - true
+        size = np.abs(error) if key == "tau" else np.linalg.norm(error, axis=-1)
+        assert (size <= allowance[key]).all(), key

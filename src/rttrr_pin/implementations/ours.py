@@ -31,7 +31,11 @@ class Recursion:
 
 
 class CompiledKernel:
-    """What `Robot.inverse_dynamics` runs; its allowance is the running error bound of the same formulas."""
+    """What `Robot.inverse_dynamics` runs; its allowance is its own running error bound.
+
+    The recursion's bound would not do, since sums in another order round otherwise. Robots that are too large to
+    compile the kernel's get the default allowance.
+    """
 
     name = "kernel"
     version: str = __version__
@@ -47,4 +51,5 @@ class CompiledKernel:
         with suppress(NumberError):  # of a number that overflows; the results stand in the arrays all the same
             self.kernel(batch.q, batch.v, batch.a, payload=list(batch.loads) or None, out=result)
         values = {name: result[name] for name in QUANTITIES}
-        return Evaluation(values, of_bounds(batch.bounds), result["tau_joint"])
+        own = batch.kernel_bounds
+        return Evaluation(values, None if own is None else of_bounds(own), result["tau_joint"])

@@ -63,15 +63,25 @@ class Batch:
     def bounds(self) -> LinkWrenches:
         """A running error bound for the formulas of the recursion, the same for a state alone and in a batch.
 
-        Compiled where that is wanted and cheap, else from `recursion`, as where a number overflows.
+        That of the kernel where that is wanted and cheap, else from `recursion`.
         """
-        if self.compiled and len(self) and len(self.model.links) <= LARGEST:
-            kernel = kernel_of(self.model, tuple(f"{name}_bound" for name in RESULTS))
-            with suppress(NumberError):
-                bounds = kernel(self.q, self.v, self.a, payload=list(self.loads) or None)
-                parts = {name: bounds[f"{name}_bound"] for name in RESULTS}
-                return LinkWrenches.of(parts, self.model.link_names, self.model.v_names)
-        return self.recursion[1]
+        own = self.kernel_bounds if self.compiled else None
+        return self.recursion[1] if own is None else own
+
+    @cached_property
+    def kernel_bounds(self) -> LinkWrenches | None:
+        """The running error bound of the kernel, whose sums are in another order than the recursion's.
+
+        None where the robot is too large to compile it, or a number overflows.
+        """
+        if not len(self) or len(self.model.links) > LARGEST:
+            return None
+        kernel = kernel_of(self.model, tuple(f"{name}_bound" for name in RESULTS))
+        with suppress(NumberError):
+            bounds = kernel(self.q, self.v, self.a, payload=list(self.loads) or None)
+            parts = {name: bounds[f"{name}_bound"] for name in RESULTS}
+            return LinkWrenches.of(parts, self.model.link_names, self.model.v_names)
+        return None
 
 
 @dataclass(frozen=True)
