@@ -17,6 +17,7 @@ import click
 from rttrr_pin.errors import CacheWarning, LoadWarning, ModelMismatchError, RttrrError
 from rttrr_pin.reporting import interrupts
 from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, discard_stdout, open_streams, shown
+from rttrr_pin.urdf.files import forget_reads
 
 COMMANDS = {
     "validate": "rttrr_pin.validation.command:validate",
@@ -73,6 +74,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         The exit code.
     """
     open_streams()
+    forget_reads()
     words = sys.argv[1:] if arguments is None else list(arguments)
     undo = interrupts.install()
     code = UNUSABLE
@@ -107,6 +109,9 @@ def _guarded(words: list[str]) -> int:
     except BrokenPipeError:  # before a verdict, as in --help
         discard_stdout()
         return AGREE
+    except (MemoryError, RecursionError) as error:
+        what = "there is not enough memory" if isinstance(error, MemoryError) else str(error)
+        _say(f"error: {what}: the robot is too large for the limits of this process")
     except OSError as error:  # a folder that may not be read; without a name, a full disk behind stdout
         if error.filename is None:
             discard_stdout()

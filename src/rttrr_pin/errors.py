@@ -173,6 +173,15 @@ def shortened(text: str) -> str:
     return text if len(text) <= LONGEST else f"{text[: LONGEST - 40]}... ({len(text)} characters)"
 
 
+def told(error: BaseException, where: str = "") -> str:
+    """The kind of an exception of a user's code and what it says, which may be long, or raise another."""
+    try:
+        text = shortened(" ".join(str(error).split()))
+    except Exception:
+        text = ""
+    return f"{type(error).__name__}{where}{text and ': '}{text}"
+
+
 def nearest(got: object, known: Iterable[str]) -> str:
     """The hint that follows an unknown name: the closest names that exist, or all of them where none is close."""
     names = list(known)

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-import rttrr_pin.reporting.files as files
+import rttrr_pin.urdf.files as files
 from fuzz.text_campaign import check
 from fuzz.text_cases import EXPRESSIONS, HOSTILE, PYTHON, TWO_LINK
 from rttrr_pin.auditing import audit, read_publication

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
 import rttrr_pin
-from rttrr_pin import RandomPayload, validate
+from rttrr_pin import Batch, Evaluation, RandomPayload, validate
 from rttrr_pin.cli import main
 from rttrr_pin.errors import ImplementationError, RttrrError
 from rttrr_pin.implementations.function import Function
@@ -40,6 +42,36 @@ def test_a_function_may_change_its_arguments() -> None:
     assert validate(pendulum(), careless, "recursion", n_states=50).passed
 
 
+def test_a_function_may_return_the_same_array_each_time() -> None:
+    buffer = np.zeros(1)
+
+    def frugal(q: Any, v: Any, a: Any) -> Any:
+        buffer[0] = moment(q[0], v[0], a[0])
+        return buffer
+
+    assert validate(pendulum(), frugal, "recursion", n_states=50).passed
+
+
+def test_what_a_function_sets_of_numpy_stays_with_it() -> None:
+    def strict(q: Any, v: Any, a: Any) -> Any:
+        np.seterr(all="raise")
+        return moment(q, v, a)
+
+    before = np.geterr()
+    assert validate(pendulum(), strict, "recursion", n_states=50).passed
+    assert np.geterr() == before
+
+
+@pytest.mark.parametrize("error", [0.0, 1e-3])
+def test_a_function_in_single_precision_is_judged_as_such(error: float) -> None:
+    def single(q: Any, v: Any, a: Any) -> Any:
+        return moment(*(x.astype(np.float32) for x in (q, v, a))).astype(np.float32) * np.float32(1.0 + error)
+
+    result = validate(pendulum(), single, "recursion", n_states=500)
+    assert result.passed == (not error)
+    assert "single is judged as float32, which it returns" in result.notes
+
+
 def test_the_robots_own_function_passes_in_all_quantities_and_a_planted_error_is_found() -> None:
     robot = rttrr_pin.load("rttrr")
 
@@ -55,17 +87,31 @@ def test_the_robots_own_function_passes_in_all_quantities_and_a_planted_error_is
     assert {row.quantity for row in rows if not row.passed} == {"N"}
 
 
+def fail(error: Exception) -> None:
+    raise error
+
+
+def silent() -> Exception:
+    """An exception that cannot say what it is."""
+    return type("Silent", (Exception,), {"__str__": lambda self: 1 / 0})()
+
+
 @pytest.mark.parametrize(
     ("function", "message"),
     [
         (lambda q, v, a: 1 / 0, "raised ZeroDivisionError at state 0: division by zero"),
         (lambda q: q, "raised TypeError at state 0"),
         (lambda q, v, a: np.zeros(2), r"returned tau of shape \(2,\), expected \(1,\)"),
-        (lambda q, v, a: "text", "returned tau as str, expected numbers"),
+        (lambda q, v, a: "text", "returned tau as str, expected real numbers"),
         (lambda q, v, a: None, "returned tau as NoneType"),
         (lambda q, v, a: {"torque": q}, "returned 'torque'"),
         (lambda q, v, a: {}, "returned nothing"),
         (lambda q, v, a: {"f": np.zeros(4)}, "expected"),
+        (lambda q, v, a: q + 0j, "returned tau as complex128, expected real numbers"),
+        (lambda q, v, a: q > 0, "returned tau as bool, expected real numbers"),
+        (lambda q, v, a: sys.exit(0), "raised SystemExit at state 0: 0"),
+        (lambda q, v, a: fail(silent()), "raised Silent at state 0$"),
+        (lambda q, v, a: fail(ValueError("x" * 10**6)), r"\(1000000 characters\)"),
     ],
 )
 def test_what_a_function_may_not_do(function: Callable[..., Any], message: str) -> None:
@@ -107,3 +153,47 @@ def test_a_module_of_the_current_folder(
     assert "my_id" in capsys.readouterr().out.splitlines()[0]
     assert main([*words, "my_dynamics:none"]) == 2
     assert "has no attribute 'none'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("text", ["import sys; sys.exit(0)", "raise SystemExit", "def f(:"])
+def test_a_module_that_ends_the_program_is_no_verdict(
+    text: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    name = f"ends_{len(text)}"
+    (tmp_path / f"{name}.py").write_text(text)
+    monkeypatch.chdir(tmp_path)
+    assert main(["validate", "--subject", f"{name}:f"]) == 2
+    assert f"{name}:f cannot be imported: " in capsys.readouterr().err
+
+
+def evaluation(**arrays: Any) -> Any:
+    """What an implementation says that was asked of three states of a pendulum."""
+    return Evaluation({"tau": np.zeros((3, 1))} | arrays.pop("values", {}), **arrays)
+
+
+@pytest.mark.parametrize(
+    ("says", "message"),
+    [
+        (lambda: {"tau": np.zeros((3, 1))}, "returned a dict: expected an Evaluation"),
+        (lambda: fail(KeyError("q")), "raised KeyError at states from 0: 'q'"),
+        (lambda: sys.exit(0), "raised SystemExit at states from 0: 0"),
+        (lambda: Evaluation({}), "has no tau in its values"),
+        (lambda: evaluation(values={"tau": np.zeros(3)}), r"has tau of shape \(3,\) and type float64 in its values"),
+        (
+            lambda: evaluation(values={"tau": np.zeros((3, 1), complex)}),
+            r"has tau of shape \(3, 1\) and type complex128 in its values",
+        ),
+        (lambda: evaluation(allowance={}), "has no tau in its allowance"),
+        (lambda: evaluation(allowance={"tau": np.full((3, 1), -1.0)}), "has an allowance for tau that is negative"),
+    ],
+)
+def test_an_implementation_of_the_users_says_what_it_promises(says: Callable[[], Any], message: str) -> None:
+    class Own:
+        name, version, quantities = "own", "", ("tau",)
+
+        def evaluate(self, batch: Batch) -> Evaluation:
+            result: Evaluation = says()
+            return result
+
+    with pytest.raises(ImplementationError, match=f"own {message}"):
+        validate(pendulum(), Own(), "recursion", n_states=3)

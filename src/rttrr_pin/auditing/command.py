@@ -56,6 +56,7 @@ def audit(
     targets = {"--json": json} | {f"--{form}": where for form, where in sheets.items()}
     check_targets(targets, [] if file is None else [file])
     publication = read_publication() if file is None else read_publication(file, **reading_of(**how))
+    check_targets(targets)  # nor what the file names
     if equation:
         publication = _only(publication, equation)
     with progress(len(publication.equations), quiet, "equations") as advance:

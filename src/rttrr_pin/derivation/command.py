@@ -82,10 +82,12 @@ def derive(
     """
     targets = {"latex": latex, "markdown": markdown, "python": python, "c": c}
     wanted = {name: where for name, where in targets.items() if where is not None}
-    check_targets({f"--{name}": where for name, where in wanted.items()}, [robot])
+    outputs = {f"--{name}": where for name, where in wanted.items()}
+    check_targets(outputs, [robot])
     field = None if gravity is None else numbers_of("--gravity", gravity, 3)
     how = reading_of(xacro, xacro_arg, lenient, no_mimic, package)
     model = load(robot, field, base, friction, **how).model  # type: ignore[arg-type]
+    check_targets(outputs)
     link = only_leaf(model) if payload_link is None else model.link_index(payload_link)
     start = time.perf_counter()
     published = None if numbers else published_symbols(robot, model, link)

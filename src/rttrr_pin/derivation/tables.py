@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from rttrr_pin.errors import EquationError, InputError, shortened
-from rttrr_pin.reporting.files import read_limited
+from rttrr_pin.urdf.files import read_limited
 
 Value = TypeVar("Value")
 

@@ -9,8 +9,10 @@ import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
+from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import QUANTITIES
-from rttrr_pin.errors import ImplementationError, RttrrError, ShapeError
+from rttrr_pin.errors import ImplementationError, RttrrError, ShapeError, told
+from rttrr_pin.implementations.allowance import default_allowance
 from rttrr_pin.implementations.protocol import Batch, Evaluation, shape_of
 from rttrr_pin.implementations.text_results import quantities_of, trial_states
 
@@ -25,9 +27,12 @@ class Function:
     if it is given three states and returns three results, the same as one by one (unless it takes no single state), it
     takes batches.
 
+    A function that returns float32 computes in it: the default allowance then has the eps of that.
+
     Attributes:
         name: the function's own.
         quantities: what it returned when it was tried.
+        notes: that it is judged as float32, where it is.
     """
 
     version = ""
@@ -39,10 +44,11 @@ class Function:
             ImplementationError: it raised an exception, or returned nothing of use.
             ShapeError: what it returned has not one number for each joint, or three for each link.
         """
-        self.name: str = getattr(function, "__name__", type(function).__name__).replace("<lambda>", "function")
+        self.name = str(getattr(function, "__name__", type(function).__name__)).replace("<lambda>", "function")
         self.function = function
         self.model = model
         self.quantities: tuple[str, ...] = ()
+        self.type = np.dtype(np.float64)
         trial = Batch(model, *trial_states(model, TRIED))
         outcomes: list[Mapping[str, Array] | RttrrError] = []
         for self.takes_batches in (False, True):
@@ -59,6 +65,7 @@ class Function:
         results = together if self.takes_batches else alone
         assert not isinstance(results, RttrrError)
         self.quantities = tuple(key for key in QUANTITIES if key in results)
+        self.notes = (f"{self.name} is judged as {self.type}, which it returns",) if self.type != np.float64 else ()
 
     def evaluate(self, batch: Batch) -> Evaluation:
         """What the function returns, state by state or at once."""
@@ -68,17 +75,27 @@ class Function:
                 options={"pass payload=None": "leave --payload out"},
             )
         if self.takes_batches:
-            return Evaluation(self._checked(self._call(batch.first, batch.q, batch.v, batch.a), (len(batch),)))
+            together = self._checked(self._call(batch.first, batch.q, batch.v, batch.a), (len(batch),))
+            return Evaluation(together, self._allowance(batch))
         results: list[dict[str, Array]] = []
         for k, state in enumerate(zip(batch.q, batch.v, batch.a, strict=True)):
             results.append(self._checked(self._call(batch.first + k, *state), (), results[0] if results else ()))
-        return Evaluation({key: np.stack([result[key] for result in results]) for key in results[0]})
+        stacked = {key: np.stack([result[key] for result in results]) for key in results[0]}
+        return Evaluation(stacked, self._allowance(batch))
+
+    def _allowance(self, batch: Batch) -> dict[str, Array] | None:
+        """The default, for numbers of the type that is returned."""
+        if self.type == np.float64:
+            return None
+        scale = float(np.finfo(self.type).eps) / EPS
+        return {key: scale * x for key, x in default_allowance(batch).items()}
 
     def _call(self, state: int, q: Array, v: Array, a: Array) -> Any:
         try:
-            return self.function(q.copy(), v.copy(), a.copy())
-        except Exception as error:  # the user's own code runs here
-            raise ImplementationError(f"{self.name} raised {type(error).__name__} at state {state}: {error}") from error
+            with np.errstate():  # whatever it sets
+                return self.function(q.copy(), v.copy(), a.copy())
+        except (Exception, SystemExit) as error:  # the user's own code runs here
+            raise ImplementationError(f"{self.name} raised {told(error, f' at state {state}')}") from error
 
     def _checked(self, result: Any, batch: tuple[int, ...], before: Iterable[str] = ()) -> dict[str, Array]:
         """What was returned, as arrays of the right shapes; the quantities are those of the trial, or as before."""
@@ -92,9 +109,15 @@ class Function:
 
     def _array(self, key: str, x: Any, wanted: tuple[int, ...]) -> Array:
         try:
-            array = np.asarray(x if x is not None else "None", dtype=np.float64)  # NumPy takes None for NaN
+            own = np.asarray(x if x is not None else "None")  # NumPy takes None for NaN
+            if own.dtype.kind not in "iufO":
+                raise TypeError
+            array = np.array(own, dtype=np.float64)  # a copy: a function may return the same array each time
         except (TypeError, ValueError):
-            raise ImplementationError(f"{self.name} returned {key} as {type(x).__name__}, expected numbers") from None
+            kind = x.dtype.name if isinstance(x, np.ndarray) else type(x).__name__
+            raise ImplementationError(f"{self.name} returned {key} as {kind}, expected real numbers") from None
+        if own.dtype.kind == "f" and own.dtype.itemsize < self.type.itemsize:
+            self.type = own.dtype
         if array.squeeze().shape != tuple(n for n in wanted if n != 1):  # axes of length 1 may be there or not
             raise ShapeError(
                 f"{self.name} returned {key} of shape {array.shape}, expected {wanted}",

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from lxml import etree
+
 from rttrr_pin.errors import UrdfError, shortened
+from rttrr_pin.urdf.files import note_read
 from rttrr_pin.urdf.sources import Source, object_source
 
 
@@ -28,4 +31,19 @@ def mjcf_source(path: Path) -> Source:
             compiled = mujoco.MjModel.from_xml_path(str(path))
     except ValueError as error:
         raise UrdfError(f"MuJoCo refuses the file: {str(error).strip()}", source=source) from error
+    _note_files(path, path.parent)
     return object_source(compiled, mujoco, "mujoco.MjModel", source)
+
+
+def _note_files(path: Path, folder: Path) -> None:
+    """A file that MuJoCo has read, with those that it includes and names."""
+    note_read(path)
+    root = etree.parse(path, etree.XMLParser(resolve_entities=False, no_network=True)).getroot()
+    places = {word for tag in root.iter("compiler") for word in tag.attrib.values()}  # meshdir and the like
+    for element in root.iter("*"):
+        name = element.get("file", "")
+        if element.tag == "include":
+            _note_files(folder / name, folder)
+        elif name:
+            for place in ("", *places):
+                note_read(folder / place / name)

@@ -128,7 +128,8 @@ class Program:
         except ValueError as error:
             raise _ReplyError(f"wrote what is no reply: {error}; it may write anything else to stderr") from None
         if isinstance(reply, dict) and "error" in reply:
-            raise _ReplyError(f"replied with an error: {shortened(str(reply['error']))}")
+            text = reply["error"] if isinstance(reply["error"], str) else "no text, where one is expected"
+            raise _ReplyError(f"replied with an error: {shortened(text)}")
         parts = quantities_of(reply, self.name)
         if self.quantities and set(parts) != set(self.quantities):
             raise _ReplyError(f"replied with {', '.join(parts)}, and with {', '.join(self.quantities)} before")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Protocol, runtime_checkable
 
@@ -15,7 +15,7 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import LINK_QUANTITIES, RESULTS, LinkWrenches
-from rttrr_pin.errors import NumberError
+from rttrr_pin.errors import ImplementationError, NumberError, RttrrError, told
 from rttrr_pin.exact.rounding import bounded_dynamics
 
 LARGEST = 16
@@ -128,6 +128,44 @@ class Implementation(Protocol):
     def evaluate(self, batch: Batch) -> Evaluation:
         """The quantities that it gives, at each state of a batch."""
         ...
+
+
+def evaluated(program: Implementation, batch: Batch) -> Evaluation:
+    """What an implementation says of a batch: whoever wrote it, arrays of the shapes that are expected.
+
+    Raises:
+        ImplementationError: it raised an exception, or says something else.
+    """
+    try:
+        result = program.evaluate(batch)
+    except (RttrrError, MemoryError):
+        raise
+    except (Exception, SystemExit) as error:  # a user's own code may run here
+        raise ImplementationError(f"{program.name} raised {told(error, f' at states from {batch.first}')}") from error
+    if not isinstance(result, Evaluation):
+        raise ImplementationError(f"{program.name} returned a {type(result).__name__}: expected an Evaluation")
+    shapes = {key: (len(batch), *shape_of(batch.model, key)) for key in program.quantities}
+    values = {key: _array(program, "values", result.values, key, shape) for key, shape in shapes.items()}
+    if result.allowance is None:
+        return replace(result, values=values)
+    shapes = {key: shape[:2] for key, shape in shapes.items()}
+    allowance = {key: _array(program, "allowance", result.allowance, key, shape) for key, shape in shapes.items()}
+    for key, x in allowance.items():
+        if (x < 0.0).any():
+            raise ImplementationError(f"{program.name} has an allowance for {key} that is negative: it is a size")
+    return replace(result, values=values, allowance=allowance)
+
+
+def _array(program: Implementation, what: str, arrays: Mapping[str, Array], key: str, shape: tuple[int, ...]) -> Array:
+    """An array of numbers of an evaluation."""
+    try:
+        array = np.asarray(arrays[key])
+    except (KeyError, TypeError, ValueError):
+        raise ImplementationError(f"{program.name} has no {key} in its {what}: expected shape {shape}") from None
+    if array.dtype.kind not in "iuf" or array.shape != shape:
+        got = f"{key} of shape {array.shape} and type {array.dtype}"
+        raise ImplementationError(f"{program.name} has {got} in its {what}: expected real numbers of shape {shape}")
+    return array.astype(np.float64, copy=False)
 
 
 def label(implementation: Implementation) -> str:

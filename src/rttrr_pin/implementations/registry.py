@@ -16,8 +16,10 @@ from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+import numpy as np
+
 from rttrr_pin.core.model import Model
-from rttrr_pin.errors import ImplementationError, InputError, RttrrError, UnknownNameError
+from rttrr_pin.errors import ImplementationError, InputError, RttrrError, UnknownNameError, told
 from rttrr_pin.implementations.function import Function
 from rttrr_pin.implementations.program import Program
 from rttrr_pin.implementations.protocol import Implementation
@@ -79,7 +81,7 @@ def make_implementation(source: Source, model: Model) -> Implementation:
     for point in _registered():
         if point.name == text:
             return _of_package(point, model)
-    if Path(text).suffix.lower() in READERS:
+    if Path(text).suffix.lower() in READERS and (Path(text).is_file() or not _is_command(text)):
         return Table(Path(text), model)
     if _is_command(text):
         return Program(text, model)
@@ -124,9 +126,9 @@ def _of_package(point: EntryPoint, model: Model) -> Implementation:
         implementation: Implementation = point.load()(model)
     except RttrrError:
         raise
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         raise ImplementationError(
-            f"implementation {point.name!r} ({point.value}) cannot be made: {type(error).__name__}: {error}"
+            f"implementation {point.name!r} ({point.value}) cannot be made: {told(error)}"
         ) from error
     if not isinstance(implementation, Implementation):
         raise ImplementationError(
@@ -142,9 +144,10 @@ def _of_module(text: str) -> Any:
     if folder not in sys.path:
         sys.path.insert(0, folder)
     try:
-        return pkgutil.resolve_name(text)
-    except Exception as error:  # the user's own code runs here
-        raise ImplementationError(f"{text} cannot be imported: {type(error).__name__}: {error}") from error
+        with np.errstate():  # whatever it sets
+            return pkgutil.resolve_name(text)
+    except (Exception, SystemExit) as error:  # the user's own code runs here
+        raise ImplementationError(f"{text} cannot be imported: {told(error)}") from error
 
 
 def make_references(sources: Source | Sequence[Source], model: Model) -> list[Implementation]:

@@ -6,6 +6,7 @@ Columns are those of docs/notation.md: q_<joint>, v_<joint>, a_<joint>; tau_<joi
 from __future__ import annotations
 
 import csv
+import io
 import itertools
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
@@ -30,11 +31,15 @@ from rttrr_pin.implementations.text_results import (
     judged_at,
     number,
 )
+from rttrr_pin.urdf.files import read_limited
 
 STATE = ("q", "v", "a")
 
 LONGEST_LINE = 4_000_000
 """Characters; thousands of links need fewer. A device has no end of a line."""
+
+LARGEST_PIPE = 2**26
+"""Bytes of what is no file and may have no end."""
 
 Texts: TypeAlias = dict[str, list[str]]
 """By column, one text for each row."""
@@ -146,10 +151,11 @@ def _alike(digits: Digits, printed: Sequence[Digits]) -> bool:
 
 def _wanted(columns: Columns, known: Mapping[str, list[str]], name: str) -> dict[str, list[str]]:
     """The columns of each array that the table has; an error if one is there in part, or of another robot."""
-    every = {column for names in known.values() for column in names}
+    every = dict.fromkeys(column for names in known.values() for column in names)
     for column in columns:
         if column not in every and column.partition("_")[0] in known and "_" in column:
-            raise UnknownNameError("column", column, every, f"in {name}")
+            blanks = "separate columns by commas, semicolons or tabs, " if len(columns) == 1 else ""
+            raise UnknownNameError("column", shortened(column), every, f"{blanks}in {name}")
     wanted = {key: names for key, names in known.items() if key in STATE or any(c in columns for c in names)}
     missing = [column for names in wanted.values() for column in names if column not in columns]
     if missing:
@@ -180,8 +186,9 @@ def _parsed(texts: Sequence[str], column: str, lines: Sequence[int], name: str) 
         values.extend(map(number, texts))
     except ValueError:
         text, line = texts[len(values)], lines[len(values)]
-        fix = ": write a point for the comma" if "," in text else ""
-        raise InputError(f"{name}, line {line}, column {column}: {shortened(repr(text))} is no number{fix}") from None
+        fix = "write a point for the comma" if "," in text else "expected one such as -1.5e-3, or NaN"
+        shown = f"{name}, line {line}, column {column}: {shortened(repr(text))}"
+        raise InputError(f"{shown} is no number: {fix}") from None
     return np.array(values)
 
 
@@ -253,6 +260,8 @@ def _json_lines(path: Path, model: Model) -> tuple[Texts, list[int]]:
 
 def _parquet(path: Path, model: Model) -> tuple[Columns, list[int]]:
     """A file of columns, with the types of its numbers."""
+    if path.exists() and not path.is_file():
+        raise InputError(f"{path} is no file: Parquet cannot be read from a folder, a pipe or a device")
     try:
         from pyarrow import parquet
     except ImportError as error:
@@ -270,19 +279,22 @@ def _parquet(path: Path, model: Model) -> tuple[Columns, list[int]]:
 def _lines_of(path: Path) -> Iterator[tuple[int, str]]:
     """The lines that are not blank, with their numbers."""
     try:
-        with path.open(encoding="utf-8-sig") as file:
+        raw = path.open("rb") if path.is_file() else io.BytesIO(read_limited(path, LARGEST_PIPE))
+        with io.TextIOWrapper(raw, encoding="utf-8-sig") as file:
             for count in itertools.count(1):
                 line = file.readline(LONGEST_LINE + 1)
                 if not line:
                     return
                 if len(line) > LONGEST_LINE:
-                    raise InputError(f"{path}, line {count}: it has more than {LONGEST_LINE:,} characters")
+                    raise InputError(f"line {count} has more than {LONGEST_LINE:,} characters")
                 if line.strip():
                     yield count, line
+    except InputError as error:
+        raise InputError(f"{path} cannot be read: {error}") from error
     except OSError as error:
         raise InputError(f"{path} cannot be read: {error.strerror}") from error
     except UnicodeDecodeError as error:
-        raise InputError(f"{path} is no UTF-8 text: {error.reason} at byte {error.start}") from error
+        raise InputError(f"{path} is no UTF-8 text: {error.reason} at byte {error.start}; save it as UTF-8") from error
 
 
 READERS = {".csv": _csv, ".jsonl": _json_lines, ".parquet": _parquet}

@@ -16,7 +16,7 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.core.wrench import LINK_QUANTITIES, QUANTITIES
 from rttrr_pin.errors import ImplementationError, UnknownNameError, shortened
 
-NOT_FINITE = re.compile(r"\b(nan|inf)\b")
+NOT_FINITE = re.compile(r"(-?)\b(nan|inf|infinity)\b", re.IGNORECASE)
 
 FULL = 16
 """Significant digits from which a printed number stands for one float64."""
@@ -109,15 +109,15 @@ def number(text: str) -> float:
     """A decimal number, NaN or infinity.
 
     Raises:
-        ValueError: it is none; Python's `1_000` is none either.
+        ValueError: it is none; what only Python reads, `1_000` and digits of other scripts, is none either.
     """
-    if "_" in text:
+    if "_" in text or not text.isascii():
         raise ValueError(text)
     return float(text)
 
 
 def json_of(line: str) -> Any:
-    """A JSON text whose numbers stay text; C's nan and inf are numbers too.
+    """A JSON text whose numbers stay text; the nan, -nan and inf of C are numbers too.
 
     Raises:
         ValueError: it is none.
@@ -125,7 +125,7 @@ def json_of(line: str) -> Any:
     try:
         return json.loads(line, parse_float=str, parse_int=str, parse_constant=str)
     except (ValueError, RecursionError) as error:
-        words = NOT_FINITE.sub(lambda match: "NaN" if match[1] == "nan" else "Infinity", line)
+        words = NOT_FINITE.sub(lambda match: "NaN" if match[2].lower() == "nan" else f"{match[1]}Infinity", line)
         if words != line:
             return json_of(words)
         raise ValueError(f"{shortened(line.strip())!r} is no JSON: {error}") from None

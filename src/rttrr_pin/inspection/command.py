@@ -26,6 +26,7 @@ from rttrr_pin.reporting.options import (
     xacro_arguments,
 )
 from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json, write_text
+from rttrr_pin.urdf.files import forget_reads
 from rttrr_pin.urdf.packages import named_packages
 from rttrr_pin.urdf.parser import read_document
 from rttrr_pin.urdf.reader import model_of
@@ -94,11 +95,15 @@ def inspect(
             for entry in inspect_each(robots, look):
                 entries.append(entry)
                 advance(len(entries))
+        check_targets(reports)
         write_json(json, lambda: many.to_dict(entries, demands))
         console.print(coloured(many.summary(entries, demands, console.width)))
     else:
         source = find(robot, reading)
+        check_targets(reports)
+        forget_reads()  # the file itself may be repaired in its place; its meshes may not
         result = look(source)
+        check_targets(reports | {"--fix": fix})
         repaired = None if fix is None else repair(result)
         if repaired is not None:
             text = ("\ufeff" if source.text.startswith(codecs.BOM_UTF8) else "") + repaired.text

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
-from urllib.parse import quote
+from urllib.parse import quote_from_bytes
 from xml.etree import ElementTree
 
 from rttrr_pin.errors import RttrrError
@@ -15,6 +15,7 @@ from rttrr_pin.inspection.checks import Severity
 from rttrr_pin.inspection.parsers import RULES, Behaviour
 from rttrr_pin.inspection.report import columns
 from rttrr_pin.inspection.run import CHECKS, Inspection
+from rttrr_pin.reporting.output import shown
 from rttrr_pin.version import __version__
 
 AS_WRITTEN = (Behaviour.ACCEPT, Behaviour.WARN)
@@ -146,7 +147,7 @@ def sarif(entries: Sequence[Entry], demands: Demands) -> dict[str, Any]:
 
 def _sarif_results(entry: Entry, demands: Demands) -> Iterator[dict[str, Any]]:
     def result(rule: str, level: str, text: str, name: str = "", line: int = 0) -> dict[str, Any]:
-        uri = entry.path.as_uri() if entry.path.is_absolute() else quote(entry.path.as_posix())
+        uri = entry.path.as_uri() if entry.path.is_absolute() else quote_from_bytes(bytes(entry.path))
         location: dict[str, Any] = {"artifactLocation": {"uri": uri}}
         location |= {"region": {"startLine": line}} if line else {}
         named = {"logicalLocations": [{"name": name}]} if name else {}
@@ -174,20 +175,20 @@ def junit(entries: Sequence[Entry], demands: Demands) -> str:
     """A test for each check and each parser, in JUnit's XML, which every CI server shows."""
     suites = ElementTree.Element("testsuites")
     for entry in entries:
-        suite = ElementTree.SubElement(suites, "testsuite", name=entry.name)
+        suite = ElementTree.SubElement(suites, "testsuite", name=entry.name, file=str(entry.path), time="0")
         for name, failed, lines in _tests(entry, demands):
-            test = ElementTree.SubElement(suite, "testcase", classname=entry.name, name=name, file=str(entry.path))
+            test = ElementTree.SubElement(suite, "testcase", classname=entry.name, name=name, time="0")
             text = "\n".join(lines)
             if failed:
                 tag = "failure" if entry.result is not None else "error"
-                ElementTree.SubElement(test, tag, message=lines[0]).text = text
+                ElementTree.SubElement(test, tag, type=name.split()[0], message=lines[0]).text = text
             elif lines:
                 ElementTree.SubElement(test, "system-out").text = text
         for tag in ("failure", "error"):
             suite.set(f"{tag}s", str(len(suite.findall(f"testcase/{tag}"))))
         suite.set("tests", str(len(suite)))
     ElementTree.indent(suites)
-    return ElementTree.tostring(suites, encoding="unicode", xml_declaration=True) + "\n"
+    return shown(ElementTree.tostring(suites, encoding="unicode", xml_declaration=True)) + "\n"
 
 
 def _tests(entry: Entry, demands: Demands) -> Iterator[tuple[str, bool, list[str]]]:

@@ -21,6 +21,7 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.solids import Box, Capsule, Cylinder, RigidBody, Solid, Sphere
 from rttrr_pin.inspection.hull import filled_hull
 from rttrr_pin.urdf.document import UrdfLink, UrdfShape
+from rttrr_pin.urdf.files import note_read
 from rttrr_pin.urdf.packages import find_package
 
 MESH_TYPES = (".stl", ".dae", ".obj", ".ply")
@@ -176,6 +177,7 @@ def _mesh(shape: UrdfShape, folder: Path | None, packages: Mapping[str, Path]) -
         path = None
     if path is None:
         return np.zeros((0, 3)), 0.0
+    note_read(path)
     corners, volume = load_mesh(path)
     return (corners * scale, volume * float(abs(scale.prod()))) if len(scale) == 3 else (corners, volume)
 

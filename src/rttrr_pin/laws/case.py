@@ -19,6 +19,7 @@ from rttrr_pin.core.tangent import TIME, in_time, over_duals
 from rttrr_pin.core.wrench import LINK_QUANTITIES
 from rttrr_pin.exact.rounding import BOUNDED, Bounded, coordinate_scalars
 from rttrr_pin.implementations import Batch, Implementation, default_allowance
+from rttrr_pin.implementations.protocol import evaluated
 
 Rows = list[list[Scalar]]
 
@@ -147,7 +148,7 @@ class Case:
 
 def _subject(batch: Batch, program: Implementation) -> Result:
     """The results of a program; the bound on the norm of a vector bounds each of its components."""
-    evaluation = program.evaluate(batch)
+    evaluation = evaluated(program, batch)
     values = evaluation.values
     allowance = default_allowance(batch) if evaluation.allowance is None else evaluation.allowance
     tau = map(Bounded, columns(values["tau"]), columns(allowance["tau"])) if "tau" in values else ()

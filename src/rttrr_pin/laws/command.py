@@ -35,13 +35,11 @@ def laws(states: int, select: tuple[str, ...], payload: str, json: str | None, q
     Exit code: 0 all laws hold, 1 some are violated, 2 unusable input.
     """
     options = RunOptions(**run, payload=None if payload == "none" else payload)
-    options.check_target(json)
+    robot = options.load(json)
     what = options.chosen()
     del what["reference"]
     with progress(states, quiet) as advance:
-        report = check_laws(
-            options.load(), n_states=states, sampling=options.sampling, select=select, progress=advance, **what
-        )
+        report = check_laws(robot, n_states=states, sampling=options.sampling, select=select, progress=advance, **what)
     write_json(json, report.to_dict)
     show_laws(report, Output(quiet=quiet or json == "-"))
     return AGREE if report.passed else DISAGREE

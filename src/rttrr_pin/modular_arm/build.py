@@ -9,9 +9,12 @@ from itertools import pairwise
 from xml.etree import ElementTree as ET
 
 from rttrr_pin.core.solids import Part, RigidBody, Triple, combine
-from rttrr_pin.errors import InputError
+from rttrr_pin.errors import InputError, shortened
 from rttrr_pin.modular_arm.modules import BASE, BASE_EXIT, CODES, MATERIALS, MODULES, TOOL, TOOL_ENTRY, Module
 from rttrr_pin.urdf.inertial import ENTRIES
+
+MOST_JOINTS = 1000
+"""Of an arm; the time to build one grows with the square."""
 
 
 @dataclass(frozen=True)
@@ -57,8 +60,12 @@ def modules_of(code: str) -> tuple[Module, ...]:
     """
     if not isinstance(code, str) or not re.fullmatch("[RT]+", code):
         raise InputError(
-            f"the arm's code is {code!r}, wanted one letter per joint, R (revolute) or T (prismatic), in capitals and "
-            f"at least one: write it like 'RTTRR'"
+            f"the arm's code is {shortened(repr(code))}, wanted one letter per joint, R (revolute) or T (prismatic), "
+            f"in capitals and at least one: write it like 'RTTRR'"
+        )
+    if len(code) > MOST_JOINTS:
+        raise InputError(
+            f"the arm's code has {len(code):,} letters, expected {MOST_JOINTS} at most: write it like 'RTTRR'"
         )
     first_of_wrist = max(1, len(code.rstrip("R")), len(code) - 2)
     keys = []

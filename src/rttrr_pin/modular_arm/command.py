@@ -10,7 +10,7 @@ import click
 from rttrr_pin.errors import InputError
 from rttrr_pin.modular_arm.build import build_urdf
 from rttrr_pin.reporting.files import write_whole
-from rttrr_pin.reporting.options import flag
+from rttrr_pin.reporting.options import check_targets, flag
 from rttrr_pin.reporting.output import AGREE
 
 
@@ -24,6 +24,8 @@ def new(code: str, output: Path | None, name: str | None, force: bool) -> int:
 
     Exit code: 0 written, 2 unusable input.
     """
+    if output is not None and not output.is_dir():
+        check_targets({"-o": output})
     text = build_urdf(code, name)
     if output is None:
         sys.stdout.write(text)

@@ -1,13 +1,11 @@
-"""Files: JSON, text that is written whole or not at all, and reading that comes to an end."""
+"""Files that are written: JSON, and text whole or not at all."""
 
 from __future__ import annotations
 
 import json
 import math
 import os
-import select
 import tempfile
-import time
 from pathlib import Path
 from typing import Any
 
@@ -29,11 +27,13 @@ def write_whole(path: Path, text: str) -> None:
     Raises:
         InputError: the folder does not exist or cannot be written to.
     """
-    target = path.resolve()  # a link stays a link
+    target = Path(os.path.realpath(path))  # a link stays a link
     try:
         if target.exists() and not target.is_file():
             put_in_place(str(path))
-            target.write_text(text, encoding="utf-8")  # a pipe or a device is written to, not replaced
+            target.write_text(
+                text, encoding="utf-8", errors="backslashreplace"
+            )  # a pipe or a device is written to, not replaced
             return
         with held_back():
             _replace(target, text)
@@ -42,40 +42,11 @@ def write_whole(path: Path, text: str) -> None:
         raise InputError(f"{path} cannot be written: {error.strerror}; choose another file") from error
 
 
-PATIENCE = 5.0
-"""Seconds that a pipe or a device may take."""
-
-
-def read_limited(path: Path, most: int) -> bytes:
-    """The bytes of a file, or of a pipe or a device, which may have no end and may never say anything.
-
-    Raises:
-        OSError: it cannot be read.
-        InputError: there are more than `most` bytes, or they do not come.
-    """
-    end = time.monotonic() + PATIENCE
-    handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK)  # a pipe that nobody writes to is opened all the same
-    parts: list[bytes] = []
-    size = 0
-    try:
-        while size <= most:
-            if not select.select([handle], [], [], max(0.0, end - time.monotonic()))[0]:
-                raise InputError(f"its text does not come within {PATIENCE:g} s; give a file")
-            part = os.read(handle, 1 << 16)
-            if not part:
-                return b"".join(parts)
-            parts.append(part)
-            size += len(part)
-    finally:
-        os.close(handle)
-    raise InputError(f"it has more than {most:,} bytes; give a shorter file")
-
-
 def _replace(target: Path, text: str) -> None:
     """A file beside the target, moved there once it is whole."""
     handle, name = tempfile.mkstemp(dir=target.parent, prefix=PARTIAL)
     try:
-        with os.fdopen(handle, "w", encoding="utf-8", newline="") as file:
+        with os.fdopen(handle, "w", encoding="utf-8", errors="backslashreplace", newline="") as file:
             file.write(text)
         umask = os.umask(0)
         os.umask(umask)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import stat
+import tempfile
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from typing import Any
 import click
 
 from rttrr_pin.errors import InputError
+from rttrr_pin.urdf.files import identity, was_read
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
@@ -127,6 +129,8 @@ def reading_of(
 def check_targets(targets: Mapping[str, str | Path | None], sources: Iterable[str | Path] = ()) -> None:
     """Before the work is done: every output can be written, none overwrites an input or another output.
 
+    Inputs are what is named, and what was read of late: call it again once files that name others are read.
+
     Args:
         targets: by option, the file to write; "-" is stdout, None nothing.
         sources: what is read; words that are no file's name are passed over.
@@ -134,28 +138,21 @@ def check_targets(targets: Mapping[str, str | Path | None], sources: Iterable[st
     Raises:
         InputError: an output is refused; says which, and why.
     """
-    owners = {_identity(Path(source)): "the input" for source in sources}
+    owners = {identity(Path(source)): "the input" for source in sources}
+    owners.pop(None, None)
     for option, where in targets.items():
         if where is None:
             continue
-        identity = "stdout" if str(where) == "-" else _writable(option, Path(where))
-        if identity in owners:
-            owner, name = owners[identity], "stdout" if identity == "stdout" else where
+        place = "stdout" if str(where) == "-" else _writable(option, Path(where))
+        if place != "stdout" and was_read(Path(where)):
+            owners[place] = "the input"
+        if place in owners:
+            owner, name = owners[place], "stdout" if place == "stdout" else where
             if owner == "the input":
                 raise InputError(f"{option} {name} would overwrite the input: give it another file")
             raise InputError(f"{owner} and {option} both go to {name}: give each a file of its own")
-        if identity is not None:
-            owners[identity] = option
-    owners.pop(None, None)
-
-
-def _identity(path: Path) -> object:
-    """What two names of one file share; None for a device or a pipe, which overwrites nothing."""
-    try:
-        status = path.stat()
-    except (OSError, ValueError):
-        return path.resolve()
-    return (status.st_dev, status.st_ino) if stat.S_ISREG(status.st_mode) else None
+        if place is not None:
+            owners[place] = option
 
 
 def _writable(option: str, path: Path) -> object:
@@ -166,11 +163,13 @@ def _writable(option: str, path: Path) -> object:
             mode = path.stat().st_mode
         except FileNotFoundError:
             mode = stat.S_IFREG
-        replaced = stat.S_ISREG(mode)  # a device or a pipe is written to
-        code = 0 if os.access(path.resolve().parent if replaced else path, os.W_OK) else errno.EACCES
-        reason = "it is a folder" if stat.S_ISDIR(mode) else os.strerror(code) if code else ""
+        reason = {stat.S_IFDIR: "it is a folder", stat.S_IFSOCK: "it is a socket"}.get(stat.S_IFMT(mode), "")
+        if stat.S_ISREG(mode):  # it is replaced by a file beside it, of which this one has no name
+            tempfile.TemporaryFile(dir=Path(os.path.realpath(path)).parent).close()
+        elif not reason and not os.access(path, os.W_OK):  # a device or a pipe is written to
+            reason = os.strerror(errno.EACCES)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
     if reason:
         raise InputError(f"{option} {path} cannot be written: {reason}; choose another file")
-    return _identity(path)
+    return identity(path)

@@ -23,8 +23,11 @@ SHOW_PROGRESS_AFTER = 1.0
 """Seconds."""
 
 
-COMMANDS = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff]")
-"""What a terminal obeys instead of showing it: control characters, marks of direction, halves of characters."""
+COMMANDS = re.compile(
+    r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ud800-\udfff\ufffe\uffff]"
+)
+"""What a terminal obeys instead of showing it, and XML has no place for: control characters, marks of direction, halves
+of characters, and no characters."""
 
 
 def shown(text: str) -> str:
@@ -50,6 +53,9 @@ class Output(Console):
 
 def open_streams() -> None:
     """Streams that take every text: a closed one goes nowhere, and one in ASCII gets a name's other letters escaped."""
+    while (free := os.open(os.devnull, os.O_RDWR)) <= 2:  # else what is opened later would get what C prints
+        pass
+    os.close(free)
     for name in ("stdout", "stderr"):
         stream = getattr(sys, name)
         if stream is None:

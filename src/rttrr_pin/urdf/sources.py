@@ -27,6 +27,7 @@ from typing import Any, TypeAlias
 from rttrr_pin.core.model import Model, Note
 from rttrr_pin.errors import InputError, UnknownNameError, UrdfError, shortened
 from rttrr_pin.urdf import xacro
+from rttrr_pin.urdf.files import read_limited
 from rttrr_pin.urdf.packages import forget_packages
 
 AnySource: TypeAlias = Any
@@ -263,6 +264,8 @@ def mjcf_path(source: Any) -> Path | None:
 
     try:
         path = Path(source).expanduser()
+        if not path.is_file():
+            return None
         with path.open("rb") as file:
             start = etree.iterparse(file, events=("start",), resolve_entities=False, no_network=True, load_dtd=False)
             return path if next(iter(start))[1].tag == "mujoco" else None
@@ -350,15 +353,7 @@ def _encoded(text: str, name: str) -> bytes:
 
 def _read(path: Path) -> bytes:
     try:
-        size = path.stat().st_size
-        if size <= LARGEST_FILE:
-            with path.open("rb") as file:
-                text = file.read(LARGEST_FILE + 1)  # a device may have no size and no end
-            size = len(text)
+        return read_limited(path, LARGEST_FILE)
     except (OSError, ValueError) as error:
-        raise UrdfError(f"cannot be read: {getattr(error, 'strerror', None) or error}", source=str(path)) from error
-    if size > LARGEST_FILE:
-        raise UrdfError(
-            f"has more than {LARGEST_FILE // 2**20} MiB, which no URDF has: is it a mesh?", source=shortened(str(path))
-        )
-    return text
+        reason = getattr(error, "strerror", None) or error
+        raise UrdfError(f"cannot be read: {reason}", source=shortened(str(path))) from error

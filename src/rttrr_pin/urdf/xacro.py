@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from rttrr_pin.errors import InputError, UrdfError
+from rttrr_pin.urdf.files import note_read
 from rttrr_pin.urdf.packages import find_package, not_found
 
 SUFFIX = ".xacro"
@@ -85,10 +86,12 @@ def expanded(path: Path, given: Mapping[str, object], packages: Mapping[str, Pat
     try:
         with _packages_of(substitution_args, find):
             text: str = xacro.process_file(str(path), mappings=dict(given)).toprettyxml(indent="  ")
+        for included in xacro.all_includes[before:]:
+            note_read(Path(included))
         return text.encode()
     except RecursionError:
         raise UrdfError("xacro cannot expand it: a macro calls itself without end", source=str(path)) from None
-    except Exception as error:  # the file's own expressions run here, and may raise anything
+    except (Exception, SystemExit) as error:  # the file's own expressions run here, and may raise anything
         files = [path, *map(Path, getattr(xacro, "all_includes", ())[before:])]
         reason = _reason(error, _texts(files), given, folder, find)
         raise UrdfError(f"xacro cannot expand it: {reason}", source=str(path)) from error

@@ -41,10 +41,10 @@ def validate(states: int, json: str | None, quiet: bool, full: bool, **run: Any)
 
     options = RunOptions(**run)
     robots = several(options.robot)
-    options.check_target(json, robots.values())
     if robots:
+        options.check_target(json, robots.values())
         return _validate_several(robots, options, states, json, quiet, full)
-    loaded = options.load()
+    loaded = options.load(json)
     with progress(states, quiet) as advance:
         result = comparing.validate(
             loaded, n_states=states, sampling=options.sampling, progress=advance, **options.chosen()
@@ -71,8 +71,7 @@ def state(index: int, json: str | None, quiet: bool, **run: Any) -> int:
     from rttrr_pin.validation.state import compare_state
 
     options = RunOptions(**run)
-    options.check_target(json)
-    report = compare_state(options.load(), index, sampling=options.sampling, **options.chosen())
+    report = compare_state(options.load(json), index, sampling=options.sampling, **options.chosen())
     write_json(json, report.to_dict)
     show_state(report, Output(quiet=quiet or json == "-", soft_wrap=False))
     return AGREE if report.passed else DISAGREE
@@ -95,9 +94,9 @@ def search(evaluations: int, json: str | None, quiet: bool, **run: Any) -> int:
     from rttrr_pin.validation.search import search_worst_state
 
     options = RunOptions(**run)
-    options.check_target(json)
+    robot = options.load(json)
     with progress(evaluations, quiet) as advance:
-        worst = search_worst_state(options.load(), evaluations=evaluations, progress=advance, **options.chosen())
+        worst = search_worst_state(robot, evaluations=evaluations, progress=advance, **options.chosen())
     write_json(json, worst.to_dict)
     show_search(worst, Output(quiet=quiet or json == "-", soft_wrap=False))
     return AGREE if worst.passed else DISAGREE

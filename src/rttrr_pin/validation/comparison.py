@@ -15,6 +15,7 @@ from rttrr_pin.exact.adjudication import Adjudication, Assessment, Deviation, in
 from rttrr_pin.exact.enclosures import Enclosures, enclose
 from rttrr_pin.exact.parameters import Parameters, exact_parameters
 from rttrr_pin.implementations import Batch, Evaluation, Implementation, make_implementation, make_references
+from rttrr_pin.implementations.protocol import evaluated
 from rttrr_pin.implementations.registry import Source
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.compare import Comparison, Difference, Ranking, with_allowance
@@ -65,7 +66,7 @@ class Run:
             comparisons.append(Comparison(model, shared, other.name, other.version))
             if not comparisons[-1].rows:
                 raise InputError(
-                    f"{judged.name} gives {', '.join(judged.quantities)}, and {other.name} gives "
+                    f"{judged.name} gives {', '.join(judged.quantities) or 'nothing'}, and {other.name} gives "
                     f"{', '.join(other.quantities)}: there is nothing to compare"
                     f"{'' if model.nv else ', since no joint moves'}"
                 )
@@ -113,7 +114,7 @@ class Run:
     @QUIET
     def evaluate(self, batch: Batch) -> list[Evaluation]:
         """What each program makes of a batch, the subject first."""
-        results = [with_allowance(batch, program.evaluate(batch)) for program in self.programs]
+        results = [with_allowance(batch, evaluated(program, batch)) for program in self.programs]
         for program, result in zip(self.programs, results, strict=True):
             _check_overflow(batch, program, result)
         return results

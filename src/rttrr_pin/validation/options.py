@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any, Literal
@@ -61,6 +62,14 @@ drawn = group(seed, sampling, payload, conditions)
 """The states that `validate` draws."""
 
 
+def files_of(program: str) -> Iterator[str]:
+    """The files that a program may consist of: a table, a command and its arguments, a module."""
+    yield program
+    with suppress(ValueError):  # a quotation mark without its other half
+        yield from shlex.split(program)
+    yield f"{program.partition(':')[0].replace('.', '/')}.py"
+
+
 @dataclass(frozen=True, slots=True)
 class RunOptions:
     """The options of one run, as typed; each has the name of its option, and its default."""
@@ -99,11 +108,18 @@ class RunOptions:
         return shlex.join(["rttrr-pin", name, *robot, *self.unusual()])
 
     def check_target(self, json: str | None, files: Iterable[Path] = ()) -> None:
-        """The result can be written, and overwrites nothing that is read."""
-        check_targets({"--json": json}, [self.robot, self.subject, *self.reference, *files])
+        """The result can be written, and overwrites nothing that is read, nor a program."""
+        programs = (name for program in (self.subject, *self.reference) for name in files_of(program))
+        check_targets({"--json": json}, [self.robot, *programs, *files])
 
-    def load(self) -> Robot:
-        """The robot."""
+    def load(self, json: str | None) -> Robot:
+        """The robot, once the result can be written without overwriting any of its files."""
+        self.check_target(json)
+        robot = self._load()
+        self.check_target(json)
+        return robot
+
+    def _load(self) -> Robot:
         field: dict[str, Any] = {}
         if self.gravity is not None:
             field["gravity"] = numbers_of("--gravity", self.gravity, 3)
