@@ -135,6 +135,7 @@ DAMAGE: dict[str, Callable[[Path], Any]] = {
     "foreign": lambda entry: entry.write_text("not machine code at all" * 100),
     "zeros": lambda entry: entry.write_bytes(bytes(entry.stat().st_size)),
     "of-another-robot": of_another_robot,
+    "endless": lambda entry: os.truncate(entry, 2**40),
 }
 
 

@@ -17,7 +17,7 @@ import yourdfpy
 import rttrr_pin
 from rttrr_pin.core.model import Model
 from rttrr_pin.errors import InputError, LoadWarning, RttrrError, UnknownNameError, UrdfError
-from rttrr_pin.urdf import sources
+from rttrr_pin.urdf import files, sources
 from rttrr_pin.urdf.yourdfpy_object import as_urdf
 from support.serial_chains import EXAMPLES, random_chain
 
@@ -141,6 +141,14 @@ def test_an_endless_file_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
         rttrr_pin.load("/dev/zero")
 
 
+@pytest.mark.parametrize("name", ["pipe.urdf", "pipe.xml", "pipe.xacro"])
+def test_a_pipe_that_stays_silent_is_given_up(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(files, "PATIENCE", 0.1)
+    os.mkfifo(tmp_path / name)
+    with pytest.raises(UrdfError, match="does not come within"):
+        rttrr_pin.load(tmp_path / name)
+
+
 def test_a_file_that_is_shut_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """As for a user who may not read it; root may read everything."""
     path = tmp_path / "x.urdf"
@@ -149,8 +157,7 @@ def test_a_file_that_is_shut_is_refused(tmp_path: Path, monkeypatch: pytest.Monk
     def shut(*arguments: object, **options: object) -> None:
         raise PermissionError(errno.EACCES, os.strerror(errno.EACCES))
 
-    monkeypatch.setattr(Path, "open", shut)
-    monkeypatch.setattr(Path, "read_bytes", shut)
+    monkeypatch.setattr(sources, "read_limited", shut)
     with pytest.raises(UrdfError, match="Permission denied"):
         rttrr_pin.load(path)
 

@@ -118,7 +118,7 @@ def _contents(path: Path) -> bytes:
     try:
         status = os.fstat(handle)
         _check_owner(status)
-        if not stat.S_ISREG(status.st_mode):
+        if not stat.S_ISREG(status.st_mode) or status.st_size > MOST_BYTES:
             return b""
         with os.fdopen(handle, "rb", closefd=False) as file:
             return file.read()

@@ -63,4 +63,4 @@ def read_limited(path: Path, most: int) -> bytes:
             size += len(part)
     finally:
         os.close(handle)
-    raise InputError(f"it has more than {most:,} bytes; give a shorter file")
+    raise InputError(f"it has more than {most / 2**20:g} MiB; give a shorter file")
