@@ -35,11 +35,8 @@ from rttrr_pin.urdf.files import read_limited
 
 STATE = ("q", "v", "a")
 
-LONGEST_LINE = 4_000_000
-"""Characters; thousands of links need fewer. A device has no end of a line."""
-
-LARGEST_PIPE = 2**26
-"""Bytes of what is no file and may have no end."""
+LONGEST_LINE, LARGEST_PIPE = 4_000_000, 2**26
+"""Characters, more than thousands of links need; and bytes of what is no file and may have no end."""
 
 Texts: TypeAlias = dict[str, list[str]]
 """By column, one text for each row."""
@@ -187,8 +184,8 @@ def _parsed(texts: Sequence[str], column: str, lines: Sequence[int], name: str) 
     except ValueError:
         text, line = texts[len(values)], lines[len(values)]
         fix = "write a point for the comma" if "," in text else "expected one such as -1.5e-3, or NaN"
-        shown = f"{name}, line {line}, column {column}: {shortened(repr(text))}"
-        raise InputError(f"{shown} is no number: {fix}") from None
+        where = f"{name}, line {line}, column {column}"
+        raise InputError(f"{where}: {shortened(repr(text))} is no number: {fix}") from None
     return np.array(values)
 
 
@@ -286,7 +283,7 @@ def _lines_of(path: Path) -> Iterator[tuple[int, str]]:
                 if not line:
                     return
                 if len(line) > LONGEST_LINE:
-                    raise InputError(f"line {count} has more than {LONGEST_LINE:,} characters")
+                    raise InputError(f"line {count}: it has more than {LONGEST_LINE:,} characters")
                 if line.strip():
                     yield count, line
     except InputError as error:
