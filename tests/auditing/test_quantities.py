@@ -18,7 +18,7 @@ from rttrr_pin.auditing.results import AuditResult
 from rttrr_pin.auditing.spelling import writing
 from rttrr_pin.errors import InputError
 from support.audits import assert_right, assert_wrong, audited, only
-from support.two_links import ARM
+from support.two_links import ARM, declared
 
 REPORTS = Path(__file__).parents[1] / "data/reports"
 
@@ -41,19 +41,7 @@ joint = "revolute about y"
 mass = "m"
 com = ["0", "0", "l"]
 inertia = ["0", "0", "0", "{inertia}", "0", "0"]
-[[symbol]]
-name = "M"
-dimension = "mass"
-[[symbol]]
-name = "m"
-dimension = "mass"
-[[symbol]]
-name = "l"
-dimension = "length"
-[[symbol]]
-name = "g"
-dimension = "acceleration"
-"""
+{declared(M="mass", m="mass", l="length", g="acceleration")}"""
 
 
 PUSHED = '[coordinates]\nforce = ["force", "0"]'
@@ -198,16 +186,8 @@ joint = "revolute about z"
 joint = "revolute about x"
 mass = "m"
 com = ["0", "l", "0"]
-[[symbol]]
-name = "m"
-dimension = "mass"
-[[symbol]]
-name = "l"
-dimension = "length"
-[[symbol]]
-name = "g"
-dimension = "acceleration"
 """
+    + declared(m="mass", l="length", g="acceleration")
 )
 
 DOUBLE = {
@@ -344,8 +324,8 @@ def random_arm(rng: random.Random) -> str:
         links.append(
             f'[[link]]\njoint = "{joint}"\norigin = {origin}\nmass = "m_{i}"\ncom = {com}\n'.replace("'", '"') + spin
         )
-    inertia = '[[symbol]]\nname = "I"\ndimension = "inertia"\n'
-    return ARM.split("[[link]]")[0] + "".join(links) + inertia + "[[symbol]]" + ARM.split("[[symbol]]", 1)[1]
+    symbols = declared(I="inertia", m_i="mass", l_i="length", g="acceleration")
+    return ARM.split("[[link]]")[0] + "".join(links) + symbols
 
 
 def test_accelerations_of_a_singular_robot_are_refused(tmp_path: Path) -> None:

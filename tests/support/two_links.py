@@ -16,17 +16,12 @@ mass = "m_2"
 com = ["l_2", "0", "0"]
 """
 
-ARM = (
-    LINKS
-    + """[[symbol]]
-name = "m_<i>"
-dimension = "mass"
-[[symbol]]
-name = "l_<i>"
-dimension = "length"
-[[symbol]]
-name = "g"
-dimension = "acceleration"
-"""
-)
+
+def declared(**dimensions: str) -> str:
+    """Tables of symbols, by name; `m_i` stands for `m_<i>`, that of every link."""
+    names = {name: name.replace("_i", "_<i>") for name in dimensions}
+    return "".join(f'[[symbol]]\nname = "{names[x]}"\ndimension = "{dimensions[x]}"\n' for x in dimensions)
+
+
+ARM = LINKS + declared(m_i="mass", l_i="length", g="acceleration")
 """The links with the usual letters."""
