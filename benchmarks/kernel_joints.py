@@ -23,8 +23,9 @@ import rttrr_pin
 from common import arguments, finish
 from rttrr_pin import Robot
 from rttrr_pin.compile import Kernel, cache
-from rttrr_pin.compile.build import STRAIGHT_LINE, build
+from rttrr_pin.compile.build import build
 from rttrr_pin.compile.call_program import CallProgram
+from rttrr_pin.compile.quantities import STRAIGHT_LINE
 from rttrr_pin.validation import Sampler
 
 sys.path.append(str(Path(__file__).parents[1] / "tests"))

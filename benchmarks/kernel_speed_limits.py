@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from rttrr_pin.compile.emit import emitter
 from rttrr_pin.compile.emit.llvm_vectors import Lines, polynomials
 from rttrr_pin.compile.expression import LEAVES, Graph, Op
-from rttrr_pin.compile.program import Field, Program
+from rttrr_pin.compile.fields import Field
+from rttrr_pin.compile.program import Program
 from rttrr_pin.compile.summation import order_sums
 
 Array = NDArray[np.float64]

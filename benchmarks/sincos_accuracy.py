@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from common import arguments, finish
 from rttrr_pin.compile.emit import emitter
 from rttrr_pin.compile.expression import Graph, Op
-from rttrr_pin.compile.program import Field, Program
+from rttrr_pin.compile.fields import Field
+from rttrr_pin.compile.program import Program
 from rttrr_pin.compile.sincos import COSINE, LARGEST, SINE
 
 Array = NDArray[np.float64]

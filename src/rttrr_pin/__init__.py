@@ -7,9 +7,9 @@
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from rttrr_pin.lazy import lazy
 from rttrr_pin.version import __version__ as __version__
 
 if TYPE_CHECKING:
@@ -44,40 +44,27 @@ if TYPE_CHECKING:
     from rttrr_pin.validation import validate_many as validate_many
     from rttrr_pin.validation.search import search_worst_state as search_worst_state
 
-
-_PLACES = {
-    "auditing": ("audit", "read_publication"),
-    "compile": ("Kernel",),
-    "core.identification": ("BaseParameters",),
-    "core.joint": ("Joint", "JointEffects", "Limits", "Mimic"),
-    "core.model": ("Link", "Model"),
-    "core.payload": ("RandomPayload",),
-    "core.statics": ("WrenchEstimate",),
-    "core.wrench": ("LinkWrenches", "Wrench"),
-    "derivation": ("derive",),
-    "errors": ("InputError", "RttrrError"),
-    "exact": ("Enclosures",),
-    "implementations": ("Batch", "Evaluation", "Implementation"),
-    "inspection": ("inspect",),
-    "laws": ("check_laws",),
-    "loading": ("load", "load_all"),
-    "robot": ("Robot",),
-    "validation": ("compare_state", "validate", "validate_many"),
-    "validation.search": ("search_worst_state",),
-}
-"""Where each public name is defined; a module is loaded when a name of it is used."""
-
-_MODULES = {name: module for module, names in _PLACES.items() for name in names}
-
-__all__ = sorted(["__version__", *_MODULES])
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _MODULES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    value = globals()[name] = getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
-    return value
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__, __all__ = lazy(
+    __name__,
+    {
+        "auditing": ("audit", "read_publication"),
+        "compile": ("Kernel",),
+        "core.identification": ("BaseParameters",),
+        "core.joint": ("Joint", "JointEffects", "Limits", "Mimic"),
+        "core.model": ("Link", "Model"),
+        "core.payload": ("RandomPayload",),
+        "core.statics": ("WrenchEstimate",),
+        "core.wrench": ("LinkWrenches", "Wrench"),
+        "derivation": ("derive",),
+        "errors": ("InputError", "RttrrError"),
+        "exact": ("Enclosures",),
+        "implementations": ("Batch", "Evaluation", "Implementation"),
+        "inspection": ("inspect",),
+        "laws": ("check_laws",),
+        "loading": ("load", "load_all"),
+        "robot": ("Robot",),
+        "validation": ("compare_state", "validate", "validate_many"),
+        "validation.search": ("search_worst_state",),
+    },
+)
+__all__ += ["__version__"]

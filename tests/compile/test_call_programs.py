@@ -15,8 +15,9 @@ from rttrr_pin.compile import Kernel, build, cache
 from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.emit import EMITTERS, emitter, llvm
 from rttrr_pin.compile.expression import Graph, Node
+from rttrr_pin.compile.fields import Field
 from rttrr_pin.compile.outlining import Outliner
-from rttrr_pin.compile.program import Field, Program
+from rttrr_pin.compile.program import Program
 from rttrr_pin.compile.quantities import QUANTITIES
 from rttrr_pin.compile.register_allocation import arranged
 from rttrr_pin.compile.trace import trace

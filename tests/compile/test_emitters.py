@@ -16,7 +16,8 @@ from rttrr_pin import JointEffects, Robot, Wrench
 from rttrr_pin.compile.cache import VARIABLE
 from rttrr_pin.compile.emit import EMITTERS, c, emitter
 from rttrr_pin.compile.expression import Graph, Op
-from rttrr_pin.compile.program import Field, Program
+from rttrr_pin.compile.fields import Field
+from rttrr_pin.compile.program import Program
 from rttrr_pin.compile.sincos import LARGEST
 from rttrr_pin.compile.threads import PART
 from rttrr_pin.errors import InputError, NumberError, UnknownNameError

@@ -11,7 +11,8 @@ import pytest
 
 from rttrr_pin.compile.emit import emitter
 from rttrr_pin.compile.expression import Graph, Op
-from rttrr_pin.compile.program import Field, Program
+from rttrr_pin.compile.fields import Field
+from rttrr_pin.compile.program import Program
 from rttrr_pin.compile.sincos import LARGEST
 from support.tolerances import SINCOS_ULPS
 

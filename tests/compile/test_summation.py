@@ -15,7 +15,8 @@ import rttrr_pin
 from rttrr_pin.compile.build import build
 from rttrr_pin.compile.emit import emitter
 from rttrr_pin.compile.expression import Graph, Op
-from rttrr_pin.compile.program import Field, Program
+from rttrr_pin.compile.fields import Field
+from rttrr_pin.compile.program import Program
 from rttrr_pin.compile.summation import order_sums
 from rttrr_pin.compile.trace import trace
 from rttrr_pin.core.arrays import Array

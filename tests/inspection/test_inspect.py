@@ -24,8 +24,9 @@ from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.solids import Box, Cylinder, RigidBody
 from rttrr_pin.errors import InputError, UnknownNameError, UrdfError
 from rttrr_pin.inspection import CHECKS, PARSERS, RULES, Inspection, Severity, inspect, repair
-from rttrr_pin.inspection.run import count_errors, inspect_document
+from rttrr_pin.inspection.run import inspect_document
 from rttrr_pin.inspection.shapes import find_mesh, looks_of
+from rttrr_pin.inspection.telling import count_errors
 from rttrr_pin.reporting.files import as_json
 from rttrr_pin.urdf.parser import read_document
 from support.inspected import arm, diagonal, inertial, joint, mirrored, shape, tip

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.solids import Box, Cylinder, RigidBody, Solid, Sphere, rotation
+from rttrr_pin.core.arrays import Array, rotation
+from rttrr_pin.core.solids import Box, Cylinder, RigidBody, Solid, Sphere
 from rttrr_pin.inspection import Finding
 from rttrr_pin.inspection.cases import cases
 from rttrr_pin.inspection.causes import Cause, cause_of

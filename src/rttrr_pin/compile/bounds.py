@@ -24,7 +24,8 @@ from dataclasses import dataclass, field
 
 from rttrr_pin.compile.constants import error_of, is_power_of_two
 from rttrr_pin.compile.expression import FUSED, Graph, Node, Op
-from rttrr_pin.compile.program import Field, Program
+from rttrr_pin.compile.fields import Field
+from rttrr_pin.compile.program import Program
 from rttrr_pin.compile.quantities import BOUND
 from rttrr_pin.core.scalars import SINE_ULPS, SLACK, UNDERFLOW, UNIT_ROUNDOFF
 

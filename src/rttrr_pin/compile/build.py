@@ -8,17 +8,15 @@ from dataclasses import replace
 from rttrr_pin.compile.bounds import with_bounds
 from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.expression import Graph, GraphFullError
+from rttrr_pin.compile.fields import PayloadSlot, inputs_read, outputs_of
 from rttrr_pin.compile.outlining import Outliner
 from rttrr_pin.compile.program import Program
-from rttrr_pin.compile.quantities import BOUND, QUANTITIES
+from rttrr_pin.compile.quantities import BOUND, QUANTITIES, STRAIGHT_LINE
 from rttrr_pin.compile.register_allocation import arranged
 from rttrr_pin.compile.summation import order_sums
-from rttrr_pin.compile.trace import TRACING, PayloadSlot, inputs_read, outputs_of, record, trace
+from rttrr_pin.compile.trace import TRACING, record, trace
 from rttrr_pin.core.model import Model
 from rttrr_pin.errors import InputError
-
-STRAIGHT_LINE = 20_000
-"""Operations, as traced, beyond which a program is made of calls: straight lines would take seconds to compile."""
 
 NODES = 3
 """Nodes that the tracer may record for each operation that an output needs: more than it does in chains about any axes,
@@ -53,16 +51,23 @@ def build(
     Raises:
         InputError: the robot is too large for these outputs.
     """
-    if any(name.endswith(BOUND) for name in outputs):
-        return _bounded(model, outputs, payloads, fused)
     if straight_line is None or not all(QUANTITIES[name].by_steps for name in outputs):
-        return order_sums(_whole(model, outputs, payloads), fused)
+        return straight_lines(model, outputs, payloads, fused)
     try:
         program = trace(model, outputs, payloads, most=straight_line * NODES)
     except GraphFullError:
         return call_program(model, outputs, payloads, fused=fused)
     short = program.operations.total <= straight_line
     return order_sums(program, fused) if short else call_program(model, outputs, payloads, fused=fused)
+
+
+def straight_lines(
+    model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot] = (), fused: bool = False
+) -> Program:
+    """The program in straight lines, however long; as `build`."""
+    if any(name.endswith(BOUND) for name in outputs):
+        return _bounded(model, outputs, payloads, fused)
+    return order_sums(_whole(model, outputs, payloads), fused)
 
 
 def _bounded(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot], fused: bool) -> Program:

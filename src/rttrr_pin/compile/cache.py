@@ -22,8 +22,6 @@ import warnings
 from functools import cache
 from pathlib import Path
 
-import platformdirs
-
 from rttrr_pin.errors import CacheWarning
 
 VARIABLE = "RTTRR_PIN_CACHE"
@@ -47,10 +45,11 @@ class DoubtError(OSError):
 
 
 def folder() -> Path | None:
-    """Where entries lie; None where the user wants none, or there is no such place."""
-    named = os.environ.get(VARIABLE)
-    if named is None:
-        named = str(Path(platformdirs.user_cache_dir("rttrr-pin", appauthor=False)) / "kernels")
+    """Where entries lie; None where the user wants none, or there is no such place.
+
+    Unless another is named, it is in the user's folder for such files (XDG Base Directory Specification).
+    """
+    named = os.environ.get(VARIABLE, f"{os.environ.get('XDG_CACHE_HOME') or '~/.cache'}/rttrr-pin/kernels")
     return _place(named) if named else None
 
 

@@ -10,7 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 
-from rttrr_pin.compile.program import Field, Program, Widths, inputs_of
+from rttrr_pin.compile.fields import Field, Widths
+from rttrr_pin.compile.program import Program, inputs_of
 
 
 @dataclass(frozen=True, eq=False)

@@ -5,19 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from math import prod
-from typing import Any, Generic, TypeVar, cast
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rttrr_pin.compile import emit, threads
 from rttrr_pin.compile.arrays import as_rows, check_out, readable, rows_in_place
-from rttrr_pin.compile.build import STRAIGHT_LINE, build
 from rttrr_pin.compile.emit import Emitter, One, emitter
-from rttrr_pin.compile.program import Program
-from rttrr_pin.compile.quantities import QUANTITIES
+from rttrr_pin.compile.fields import PayloadSlot, inputs_read
+from rttrr_pin.compile.quantities import QUANTITIES, STRAIGHT_LINE
 from rttrr_pin.compile.threads import MOST as MOST_THREADS
-from rttrr_pin.compile.trace import PayloadSlot, inputs_read
 from rttrr_pin.compile.variant import Variant, compiled
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import common_shape, overflow
@@ -26,6 +24,9 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load, Payloads, loads_of
 from rttrr_pin.core.wrench import Wrench
 from rttrr_pin.errors import InputError, UnknownNameError
+
+if TYPE_CHECKING:
+    from rttrr_pin.compile.program import Program
 
 Result = TypeVar("Result", bound=Array | dict[str, Array])
 """What a kernel returns: an array for a single output, a dict of them by name for several."""
@@ -77,9 +78,9 @@ class Kernel(Generic[Result]):
     @cached_property
     def program(self) -> Program:
         """The straight-line program (without payload), with the count of its operations."""
-        program = build(self.model, self.outputs, straight_line=None)
-        assert isinstance(program, Program)
-        return program
+        from rttrr_pin.compile.build import straight_lines
+
+        return straight_lines(self.model, self.outputs)
 
     def source(self, emitter: str = "c") -> str:
         """The program (without payload) as a source file, to carry the dynamics elsewhere.

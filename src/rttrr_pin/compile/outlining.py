@@ -17,7 +17,8 @@ from typing import Any
 from rttrr_pin.compile.call_program import Step
 from rttrr_pin.compile.call_signature import Leaf, answer, arguments, built
 from rttrr_pin.compile.expression import FUNCTIONS, Graph, Node, Op
-from rttrr_pin.compile.program import Field, Program, inputs_of
+from rttrr_pin.compile.fields import Field
+from rttrr_pin.compile.program import Program, inputs_of
 
 
 @dataclass(eq=False)

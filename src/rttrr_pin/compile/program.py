@@ -2,30 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
 from rttrr_pin.compile.expression import LEAVES, Graph, Op
-
-
-@dataclass(frozen=True, slots=True)
-class Field:
-    """An array that goes in or comes out: so many numbers for each state.
-
-    Attributes:
-        name: such as "q" or "tau".
-        shape: of what belongs to one state, such as (6, 3).
-    """
-
-    name: str
-    shape: tuple[int, ...]
-
-    @property
-    def width(self) -> int:
-        """The count of numbers for each state."""
-        return math.prod(self.shape)
+from rttrr_pin.compile.fields import Field, Widths
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,23 +34,6 @@ class Operations:
             f"{self.multiplications} multiplications, {self.additions} additions, {self.negations} sign changes, "
             f"{self.sincos} angles"
         )
-
-
-class Widths:
-    """What has input and output arrays."""
-
-    inputs: tuple[Field, ...]
-    outputs: tuple[Field, ...]
-
-    @property
-    def width_in(self) -> int:
-        """The count of numbers that one state brings."""
-        return sum(field.width for field in self.inputs)
-
-    @property
-    def width_out(self) -> int:
-        """The count of numbers that one state yields."""
-        return sum(field.width for field in self.outputs)
 
 
 @dataclass(frozen=True, eq=False)

@@ -203,6 +203,9 @@ QUANTITIES: dict[str, Quantity] = {
 }
 """By name; `robot.compile(outputs=...)` takes any of them."""
 
+STRAIGHT_LINE = 20_000
+"""Operations, as traced, beyond which a program is made of calls: straight lines would take seconds to compile."""
+
 BOUND = "_bound"
 """What the name of a bound ends with, behind that of what it bounds."""
 

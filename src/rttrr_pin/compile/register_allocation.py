@@ -7,8 +7,9 @@ from dataclasses import dataclass, field
 
 from rttrr_pin.compile.call_program import Call, CallProgram, Step
 from rttrr_pin.compile.expression import Graph, Node
+from rttrr_pin.compile.fields import Field
 from rttrr_pin.compile.outlining import CallSite, Outliner
-from rttrr_pin.compile.program import Field, Program
+from rttrr_pin.compile.program import Program
 
 
 def arranged(

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from rttrr_pin.compile.constants import ConstantWithError
 from rttrr_pin.compile.expression import Graph, Node, Op, of_number
-from rttrr_pin.compile.program import Field, Program
+from rttrr_pin.compile.fields import PayloadSlot, inputs_read, outputs_of
+from rttrr_pin.compile.program import Program
 from rttrr_pin.compile.quantities import QUANTITIES, Motion
 from rttrr_pin.compile.regrouping import regroup
 from rttrr_pin.core.algebra import Scalar, Vector
@@ -17,19 +18,6 @@ from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.newton_euler import Payload
 from rttrr_pin.core.scalars import Arithmetic
-
-
-@dataclass(frozen=True, slots=True)
-class PayloadSlot:
-    """Where a payload acts, and in whose axes; its numbers come with each state.
-
-    Attributes:
-        link: index of the link.
-        in_base: whether in base axes; else in the link's.
-    """
-
-    link: int
-    in_base: bool = False
 
 
 def trace(
@@ -96,19 +84,6 @@ def record(
     )
     scalars: list[Any] = [x for quantity in wanted for x in quantity.scalars(motion)]
     return tuple(x.number if isinstance(x, Node) else graph.constant(x) for x in scalars)
-
-
-def outputs_of(model: Model, outputs: Sequence[str]) -> tuple[Field, ...]:
-    """The arrays that a program writes."""
-    return tuple(Field(name, QUANTITIES[name].shape(model)) for name in outputs)
-
-
-def inputs_read(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot] = ()) -> tuple[Field, ...]:
-    """The arrays that a program reads: what its outputs depend on, then force and moment of each payload."""
-    sizes = {"q": model.nq, "v": model.nv, "a": model.nv}
-    needed = [name for name in sizes if any(name in QUANTITIES[output].inputs for output in outputs)]
-    slots = [Field(f"payload_{k}_{name}", (3,)) for k in range(len(payloads)) for name in "fn"]
-    return (*(Field(name, (sizes[name],)) for name in needed), *slots)
 
 
 def _keep(vector: Vector) -> Vector:

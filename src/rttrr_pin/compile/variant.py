@@ -11,10 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rttrr_pin.compile import cache
-from rttrr_pin.compile.build import build
 from rttrr_pin.compile.emit import Emitter, Executable
-from rttrr_pin.compile.program import Field, Widths
-from rttrr_pin.compile.trace import PayloadSlot, inputs_read, outputs_of
+from rttrr_pin.compile.fields import Field, PayloadSlot, Widths, inputs_read, outputs_of
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 
@@ -65,6 +63,8 @@ def compiled(
     name = cache.key(emitter.identity, fingerprint(model), repr((outputs, slots, longest)))
     code = cache.read(name)
     if code is None:
+        from rttrr_pin.compile.build import build  # the compiler, not needed for what is on disk
+
         code = emitter.emit(build(model, outputs, slots, longest, emitter.fuses))
         cache.write(name, code)
     fields_in, fields_out = inputs_read(model, outputs, slots), outputs_of(model, outputs)

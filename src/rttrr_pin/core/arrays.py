@@ -1,7 +1,9 @@
-"""The array type of the package, and the norm of its vectors."""
+"""The array type of the package, the norm of its vectors, and rotations by URDF's roll, pitch and yaw."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from math import atan2, cos, hypot, sin
 from typing import TypeAlias
 
 import numpy as np
@@ -22,3 +24,31 @@ def norm(vectors: Array) -> Array:
     scaled = np.ldexp(vectors, -exponent[..., None])
     with np.errstate(over="ignore"):
         return np.ldexp(np.sqrt(np.add.reduce(scaled * scaled, axis=-1)), exponent)
+
+
+def rotation(rpy: Sequence[float]) -> Array:
+    """URDF's roll, pitch, yaw about fixed x, y, z [rad] as R = R_z(yaw) R_y(pitch) R_x(roll), (3, 3).
+
+    R maps vectors of the turned frame to the fixed frame.
+    """
+    (sr, sp, sy), (cr, cp, cy) = np.sin(rpy), np.cos(rpy)
+    return np.array(
+        [
+            [cp * cy, sp * (sr * cy) - cr * sy, sp * (cr * cy) + sr * sy],
+            [cp * sy, sp * (sr * sy) + cr * cy, sp * (cr * sy) - sr * cy],
+            [-sp, cp * sr, cp * cr],
+        ]
+    )
+
+
+def angles_of(R: Array) -> tuple[float, float, float]:
+    """Roll, pitch, yaw with R_z(yaw) R_y(pitch) R_x(roll) = R, accurate at pitch +-pi/2 too.
+
+    Near there roll and yaw are ill-conditioned one by one; yaw is taken from R R_x(roll)^T, so that it makes up for
+    whatever roll came out as.
+    """
+    roll = atan2(R[2, 1], R[2, 2])
+    pitch = atan2(-R[2, 0], hypot(R[2, 1], R[2, 2]))
+    c, s = cos(roll), sin(roll)
+    yaw = atan2(s * R[0, 2] - c * R[0, 1], c * R[1, 1] - s * R[1, 2])
+    return roll, pitch, yaw

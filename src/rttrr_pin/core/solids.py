@@ -9,12 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from math import atan2, cos, hypot, inf, pi, sin
+from math import inf, pi
 
 import numpy as np
 
 from rttrr_pin.core.algebra import Vector
-from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.arrays import Array, rotation
 from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.errors import InputError
 
@@ -204,34 +204,6 @@ class Part:
     def body(self) -> RigidBody:
         """The part as a rigid body in its owner's frame."""
         return RigidBody.of(self.solid, self.material.density).placed(self.xyz, self.rpy)
-
-
-def rotation(rpy: Sequence[float]) -> Array:
-    """URDF's roll, pitch, yaw about fixed x, y, z [rad] as R = R_z(yaw) R_y(pitch) R_x(roll), (3, 3).
-
-    R maps vectors of the turned frame to the fixed frame.
-    """
-    (sr, sp, sy), (cr, cp, cy) = np.sin(rpy), np.cos(rpy)
-    return np.array(
-        [
-            [cp * cy, sp * (sr * cy) - cr * sy, sp * (cr * cy) + sr * sy],
-            [cp * sy, sp * (sr * sy) + cr * cy, sp * (cr * sy) - sr * cy],
-            [-sp, cp * sr, cp * cr],
-        ]
-    )
-
-
-def angles_of(R: Array) -> tuple[float, float, float]:
-    """Roll, pitch, yaw with R_z(yaw) R_y(pitch) R_x(roll) = R, accurate at pitch +-pi/2 too.
-
-    Near there roll and yaw are ill-conditioned one by one; yaw is taken from R R_x(roll)^T, so that it makes up for
-    whatever roll came out as.
-    """
-    roll = atan2(R[2, 1], R[2, 2])
-    pitch = atan2(-R[2, 0], hypot(R[2, 1], R[2, 2]))
-    c, s = cos(roll), sin(roll)
-    yaw = atan2(s * R[0, 2] - c * R[0, 1], c * R[1, 1] - s * R[1, 2])
-    return roll, pitch, yaw
 
 
 def combine(bodies: Iterable[RigidBody]) -> RigidBody:

@@ -9,10 +9,10 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 
+from rttrr_pin.core.arrays import rotation
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints import JOINT_TYPES
 from rttrr_pin.core.model import STANDARD_GRAVITY, Link, Model
-from rttrr_pin.core.solids import rotation
 from rttrr_pin.derivation.numbers import exact_number
 from rttrr_pin.derivation.symbolic_robot import AXES, Slot
 from rttrr_pin.derivation.tables import Table, shown

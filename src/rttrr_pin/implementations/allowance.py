@@ -174,6 +174,13 @@ def add_inwards(parents: Sequence[int], f: Array, n: Array, reach: Array) -> Non
             n[:, p] += n[:, i] + reach[:, i] * f[:, i]
 
 
+def sum_inwards(parents: Sequence[int], terms: Array) -> None:
+    """Add what is of each body to what is of its parent (-1 where there is none), in place, (N, bodies, ...)."""
+    for i, p in reversed(list(enumerate(parents))):
+        if p >= 0:
+            terms[:, p] += terms[:, i]
+
+
 def levels(parents: Sequence[int]) -> Array:
     """How many bodies there are from each one inward, itself included."""
     counts = np.zeros(len(parents))

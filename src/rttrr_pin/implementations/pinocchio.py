@@ -25,12 +25,13 @@ body, whichever link of it they hang on, and none if the body is the universe: i
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 import pinocchio as pin
+from numpy.typing import NDArray
 
 from rttrr_pin.core.arrays import Array, norm
 from rttrr_pin.core.joints import CONTINUOUS, PLANAR
@@ -39,7 +40,7 @@ from rttrr_pin.core.payload import Load
 from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.errors import ImplementationError, ModelMismatchError
-from rttrr_pin.implementations.allowance import add_inwards, of_library, of_other_numbers
+from rttrr_pin.implementations.allowance import of_library, of_other_numbers, sum_inwards
 from rttrr_pin.implementations.library import (
     LibraryJoint,
     Motion,
@@ -51,20 +52,17 @@ from rttrr_pin.implementations.library import (
     urdf_of,
 )
 from rttrr_pin.implementations.pinocchio_model import (
-    PinLink,
     built_model,
     differences,
     pin_joints,
     pin_links,
     snapped_axes,
 )
+from rttrr_pin.implementations.pinocchio_rounding import OPERATIONS, rounding
 from rttrr_pin.implementations.protocol import Batch, Evaluation
 
 TENSORS = 4
 """Arrays of nv^3 numbers in Pinocchio's data, for second derivatives: of 500 joints they take 4 GB."""
-
-OPERATIONS = 4
-"""Roundings on the way of each term over one joint: a vector product, a sum, a change of frame."""
 
 
 class Pinocchio:
@@ -104,14 +102,12 @@ class Pinocchio:
         for joint in self.joints:
             self.pin_model.armature[joint.v] = joint.joint.effects.armature
         self.links = pin_links(model, self.pin_model)
-        self._mass = np.array([link.mass for link in self.links])
-        self._com = np.array([link.p + link.R @ link.com for link in self.links])
-        self._to_link = np.array([link.R.T for link in self.links])
-        self._tensor = np.array([link.inertia for link in self.links])
         self.data = self.pin_model.createData()
-        self._held = {i: self._held_by(i) for i, link in enumerate(self.links) if link.fixed}
-        hanging = {joint for _, joints in self._held.values() for joint in joints}
-        self._hanging = {joint: column for column, joint in enumerate(sorted(hanging))}
+        fixed = self.links.fixed
+        self._carrier = [p if p >= 0 and fixed[p] else -1 for p in (joint.parent for joint in model.joints)]
+        self._inward = [p if own else -1 for p, own in zip(self._carrier, fixed, strict=True)]
+        self._hanging = [i for i, p in enumerate(self._carrier) if p >= 0 and not fixed[i]]
+        self._idle = self._without_inertia()
 
     def evaluate(self, batch: Batch) -> Evaluation:
         """tau, F, N, f, n by Pinocchio; a continuous joint's coordinate is its angle."""
@@ -123,10 +119,8 @@ class Pinocchio:
         f, n, moments = self._across_joints(record, F, N, loads)
         tau, tau_joint = driving_forces(self.model, self.joints, states, record.tau, has_armature=True)
         values = {"tau": tau, "F": F, "N": N, "f": f, "n": n}
-        cancelling = _rounding(self.pin_model, self.links, record.spatial, self._reach(motion))
-        for i, (links, hanging) in self._held.items():
-            if not hanging and not any(self.links[k].massive for k in links):
-                cancelling["f"][:, i] = cancelling["n"][:, i] = 0.0  # nothing but loads acts there
+        cancelling = rounding(self.pin_model, self.links, record.spatial, self._reach(motion))
+        cancelling["f"][:, self._idle] = cancelling["n"][:, self._idle] = 0.0
         cancelling["n"] += OPERATIONS * EPS * moments
         allowance = of_library(batch, values, tau_joint, cancelling)
         if self.built is not self.model:
@@ -140,10 +134,10 @@ class Pinocchio:
         for load in loads:
             f, n = (np.broadcast_to(x, (len(q), 3)) for x in (load.f, load.n))
             if load.in_base:
-                link, turns = self.links[load.link], np.empty((len(q), 3, 3))
+                link, turns = self.links.at(load.link), np.empty((len(q), 3, 3))
                 for k in range(len(q)):
                     pin.forwardKinematics(self.pin_model, self.data, q[k])
-                    turns[k] = (self.data.oMi[link.joint].rotation @ link.R).T
+                    turns[k] = (self.data.oMi[int(link.joint)].rotation @ link.R).T
                 f, n = (product(turns, x) for x in (f, n))
             out.append(Load(load.link, f, n))
         return out
@@ -152,15 +146,16 @@ class Pinocchio:
         """Call `rnea` on each state and keep what it leaves in `data`, whose entries the next call overwrites."""
         model, data, rows = self.pin_model, self.data, len(motion.q)
         views = [x.vector for name in ("f", "v", "a_gf") for x in getattr(data, name)]
-        placements = [data.liMi[joint] for joint in self._hanging]
+        placements = [data.liMi[int(self.links.joint[i])] for i in self._hanging]
         parts = [x for M in placements for x in (*M.rotation.T, M.translation)]  # rows of R^T, then p: views too
         spatial, hanging = np.empty((rows, 18 * model.njoints)), np.empty((rows, 12 * len(placements)))
         tau = np.empty((rows, model.nv))
         external = pin.StdVec_Force([pin.Force.Zero()] * model.njoints)
         forces: dict[int, Array] = {}  # minus the sum of the loads, by joint
         for load in loads:
-            link = self.links[load.link]
-            forces[link.joint] = forces.get(link.joint, np.zeros((rows, 6))) - link.to_joint(load.f, load.n)
+            link = self.links.at(load.link)
+            joint = int(link.joint)
+            forces[joint] = forces.get(joint, np.zeros((rows, 6))) - link.to_joint(load.f, load.n)
         targets = [(external[joint].vector, values) for joint, values in forces.items()]
         for k, (q, v, a) in enumerate(zip(motion.q, motion.v, motion.a, strict=True)):
             for target, values in targets:
@@ -173,64 +168,57 @@ class Pinocchio:
 
     def _net(self, record: _Record) -> tuple[Array, Array]:
         """F, N: mass times acceleration of the centre of mass, and Euler's equation about it."""
-        at = [link.joint for link in self.links]
-        v, w = np.split(record.spatial[:, 1, at], 2, axis=-1)
-        v_dot, w_dot = np.split(record.spatial[:, 2, at], 2, axis=-1)
-        c, R_T, I = self._com, self._to_link, self._tensor
+        links = self.links
+        v, w = np.split(record.spatial[:, 1, links.joint], 2, axis=-1)
+        v_dot, w_dot = np.split(record.spatial[:, 2, links.joint], 2, axis=-1)
+        c, R_T, I = links.p + product(links.R, links.com), np.swapaxes(links.R, -1, -2), links.inertia
         # a_gf is a spatial acceleration: w x v makes it that of the point at the origin.
         at_com = v_dot + np.cross(w, v) + np.cross(w_dot, c) + np.cross(w, np.cross(w, c))
-        F = product(R_T, self._mass[:, None] * at_com)
+        F = product(R_T, links.mass[:, None] * at_com)
         w, w_dot = product(R_T, w), product(R_T, w_dot)
         return F, product(I, w_dot) + np.cross(w, product(I, w))
 
     def _across_joints(self, record: _Record, F: Array, N: Array, loads: Sequence[Load]) -> tuple[Array, Array, Array]:
         """f, n: what crosses each joint, moving or fixed; and the moments that round on the way, (N, links).
 
-        Behind a fixed joint, forces go to the body's origin and from there to the link's: their moments about both
-        round.
+        Pinocchio keeps no force across a fixed joint: it is what moves the links behind it and all that they carry.
+        These forces go to the body's origin, add up there, and go on to the link's: their moments about both round.
         """
-        rows = len(record.tau)
-        out, moments = np.zeros((rows, len(self.links), 6)), np.zeros((rows, len(self.links)))
-        for i, link in enumerate(self.links):
-            if not link.fixed:
-                out[:, i] = record.spatial[:, 0, link.joint]
-                continue
-            # Pinocchio keeps no force across a fixed joint: it is what moves the links behind it and all they carry.
-            total = np.zeros((rows, 6))
-            for arm, f, at_body in self._behind(i, record, F, N, loads):
-                total += at_body
-                moments[:, i] += (link.arm + arm) * norm(f)
-            out[:, i] = link.from_joint(total)
-            for load in loads:
-                if load.link == i:
-                    out[:, i] += np.concatenate([load.f, load.n], axis=1)
-        return out[..., :3], out[..., 3:], moments
-
-    def _behind(
-        self, i: int, record: _Record, F: Array, N: Array, loads: Sequence[Load]
-    ) -> Iterator[tuple[float | Array, Array, Array]]:
-        """All that acts behind fixed joint i: its distance from the body's origin, force, and wrench there, (N, 6)."""
-        links, hanging = self._held[i]
-        for k in links:
-            link = self.links[k]
-            at_body = link.to_joint(F[:, k], N[:, k] + np.cross(link.com, F[:, k]))
-            yield link.arm + float(norm(link.com)), F[:, k], at_body
-        for joint in hanging:
-            placement = record.hanging[:, self._hanging[joint]]
-            R, p = np.swapaxes(placement[:, :3], -1, -2), placement[:, 3]
-            force, moment = np.split(record.spatial[:, 0, joint], 2, axis=-1)
-            f, n = product(R, force), product(R, moment)
-            yield norm(p), force, np.concatenate([f, n + np.cross(p, f)], axis=1)
+        links, fixed = self.links, self.links.fixed
+        behind = self._behind(record, F, N, loads)
+        sum_inwards(self._inward, behind)
+        out = record.spatial[:, 0, links.joint]
+        out[:, fixed] = links.at(fixed).from_joint(behind[:, fixed, :6])
         for load in loads:
-            if load.link in links and load.link != i:
-                link = self.links[load.link]
-                yield link.arm, load.f, link.to_joint(load.f, load.n)
+            if fixed[load.link]:
+                out[:, load.link] += np.concatenate([load.f, load.n], axis=1)
+        return out[..., :3], out[..., 3:], behind[..., 7] + links.arm * behind[..., 6]
 
-    def _held_by(self, i: int) -> tuple[list[int], list[int]]:
-        """The links that are one rigid body with link i, further out, and Pinocchio's moving joints on them."""
-        body, parents = self.links[i].joint, [joint.parent for joint in self.model.joints]
-        links = [k for k, link in enumerate(self.links) if link.joint == body and i in self.model.path(k)]
-        return links, [link.joint for k, link in enumerate(self.links) if not link.fixed and parents[k] in links]
+    def _behind(self, record: _Record, F: Array, N: Array, loads: Sequence[Load]) -> Array:
+        """What acts on each fixed link and on its way to it crosses no other fixed joint, see `_acting`; else zero."""
+        fixed, own = self.links.fixed, self.links.at(self.links.fixed)
+        behind = np.zeros((*F.shape[:2], 8))
+        F, N = F[:, fixed], N[:, fixed]
+        behind[:, fixed] = _acting(own.to_joint(F, N + np.cross(own.com, F)), F, own.arm + norm(own.com))
+        for k, i in enumerate(self._hanging):
+            R, p = np.swapaxes(record.hanging[:, k, :3], -1, -2), record.hanging[:, k, 3]
+            force, moment = np.split(record.spatial[:, 0, self.links.joint[i]], 2, axis=-1)
+            f, n = product(R, force), product(R, moment)
+            at_body = np.concatenate([f, n + np.cross(p, f)], axis=1)
+            behind[:, self._carrier[i]] += _acting(at_body, force, norm(p))
+        for load in loads:
+            if (p := self._inward[load.link]) >= 0:
+                link = self.links.at(load.link)
+                behind[:, p] += _acting(link.to_joint(load.f, load.n), load.f, link.arm)
+        return behind
+
+    def _without_inertia(self) -> NDArray[np.bool_]:
+        """The fixed links on which, and behind which, nothing acts but loads."""
+        acting = np.array(self.links.fixed & self.links.massive, dtype=int)
+        for i in self._hanging:
+            acting[self._carrier[i]] += 1
+        sum_inwards(self._inward, acting[None])
+        return self.links.fixed & (acting == 0)
 
     def _reach(self, motion: Motion) -> Array:
         """At most how far each joint's origin is from that of the joint further in, (N, njoints) [m]."""
@@ -265,6 +253,12 @@ def _check_memory(nv: int) -> None:
         )
 
 
+def _acting(wrench: Array, force: Array, arm: Array) -> Array:
+    """A wrench at the body's origin, the size of its force, and that of the moment as which it came, (N, ..., 8)."""
+    size = norm(force)[..., None]
+    return np.concatenate([wrench, size, np.broadcast_to(arm, size.shape[:-1])[..., None] * size], axis=-1)
+
+
 class _Record(NamedTuple):
     """What is kept of a batch."""
 
@@ -278,42 +272,3 @@ def _in_cosines(joint: LibraryJoint, q: Array, v: Array, a: Array) -> tuple[Arra
     if joint.joint.type in (CONTINUOUS, PLANAR):
         q = np.hstack([q[:, :-1], np.cos(q[:, -1:]), np.sin(q[:, -1:])])
     return q, v, a
-
-
-def _rounding(pin_model: pin.Model, links: Sequence[PinLink], spatial: Array, reach: Array) -> dict[str, Array]:
-    """What rounds in Pinocchio's formulas and does not occur in ours: sizes times `OPERATIONS` eps, (N, links) each.
-
-    - Spatial accelerations and momenta about the joint's origin O contain terms that cancel in the result: w x v_O in
-      `a_gf`, v_O x m v_O and m |c|^2 (|w_dot| + |w|^2) in the moment.
-    - Rotations about an axis that is not x, y or z itself, -z for one, come from 1 - cos q, so that even what lies
-      along the axis is rounded when it is carried over the joint. Ours carries it over exactly, and its bound knows.
-
-    Sizes add up like the terms: outwards for velocities and accelerations, inwards for forces and moments. `reach` is
-    at most how far a joint's origin is from that of the joint further in, (N, njoints) [m].
-    """
-    v, w = (norm(x) for x in np.split(spatial[:, 1], 2, axis=-1))
-    v_dot, w_dot = (norm(x) for x in np.split(spatial[:, 2], 2, axis=-1))
-    parents = [int(parent) for parent in pin_model.parents]
-    turning = w_dot + w**2
-    acceleration = v_dot + w * v
-    for joint in range(1, len(parents)):
-        turning[:, joint] += turning[:, parents[joint]]
-        acceleration[:, joint] += acceleration[:, parents[joint]] + reach[:, joint] * turning[:, parents[joint]]
-
-    inertias = pin_model.inertias
-    mass = norms(inertia.mass for inertia in inertias)  # a size, also where a file has it negative
-    c, tensor = norms(inertia.lever for inertia in inertias), norms(inertia.inertia for inertia in inertias)
-    force = mass * (acceleration + c * turning)
-    moment = mass * (v**2 + c * acceleration + c**2 * turning) + tensor * turning
-    add_inwards([-1, *parents[1:]], force, moment, reach)
-
-    at = [link.joint for link in links]
-    arm = norms(link.p for link in links)
-    own_arm = arm + norms(link.com for link in links)
-    out = {
-        "F": norms(link.mass for link in links) * (acceleration[:, at] + own_arm * turning[:, at]),
-        "N": norms(link.inertia for link in links) * turning[:, at],
-        "f": force[:, at],
-        "n": moment[:, at] + arm * force[:, at],
-    }
-    return {key: OPERATIONS * EPS * size for key, size in out.items()}

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 import pinocchio as pin
+from numpy.typing import NDArray
 
 from rttrr_pin.core.algebra import Vector
 from rttrr_pin.core.arrays import Array, norm
@@ -26,9 +26,8 @@ SNAPPED = 1e-12
 """Pinocchio takes an axis so near to x, y or z as that (`isApprox` of Eigen); -x, -y and -z are axes like any other."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class PinLink:
-    """A link of the file, where Pinocchio has it: on a joint, at a placement.
+class PinLinks(NamedTuple):
+    """The links of the file, where Pinocchio has them: on a joint, at a placement; (links, ...) each.
 
     Attributes:
         fixed: whether a fixed joint carries it, so that Pinocchio merged it into the body of `joint`.
@@ -40,34 +39,39 @@ class PinLink:
         inertia: about the centre of mass, in link axes [kg m^2].
     """
 
-    fixed: bool
-    joint: int
+    fixed: NDArray[np.bool_]
+    joint: NDArray[np.int64]
     R: Array
     p: Array
-    mass: float
+    mass: Array
     com: Array
     inertia: Array
 
-    @property
-    def arm(self) -> float:
-        """The distance of its origin from the joint's [m]."""
-        return float(norm(self.p))
+    def at(self, which: int | NDArray[np.bool_]) -> PinLinks:
+        """One of them, or some."""
+        return PinLinks(*(x[which] for x in self))
 
     @property
-    def massive(self) -> bool:
-        """Whether it has any inertia."""
-        return bool(self.mass or self.inertia.any())
+    def arm(self) -> Array:
+        """The distances of their origins from the joints' [m]."""
+        return norm(self.p)
+
+    @property
+    def massive(self) -> NDArray[np.bool_]:
+        """Which have any inertia."""
+        return (self.mass != 0.0) | self.inertia.any(axis=(-2, -1))
 
     def to_joint(self, f: Array, n: Array) -> Array:
-        """A force and a moment at the link's origin, (N, 3) each, at the joint's: (N, 6)."""
+        """Forces and moments at the links' origins, (N, ..., 3) each, at the joints': (N, ..., 6)."""
         f, n = library.product(self.R, f), library.product(self.R, n)
-        return np.concatenate([f, n + np.cross(self.p, f)], axis=1)
+        return np.concatenate([f, n + np.cross(self.p, f)], axis=-1)
 
     def from_joint(self, force: Array) -> Array:
-        """A spatial force at the joint's origin, (N, 6), at the link's."""
-        f, n = force[:, :3], force[:, 3:]
+        """Spatial forces at the joints' origins, (N, ..., 6), at the links'."""
+        f, n = force[..., :3], force[..., 3:]
         n = n - np.cross(self.p, f)
-        return np.concatenate([library.product(self.R.T, f), library.product(self.R.T, n)], axis=1)
+        R_T = np.swapaxes(self.R, -1, -2)
+        return np.concatenate([library.product(R_T, f), library.product(R_T, n)], axis=-1)
 
 
 def built_model(urdf: str, *root: Any, **options: Any) -> tuple[Any, str]:
@@ -105,28 +109,33 @@ def pin_joints(model: Model, pin_model: Any) -> list[library.LibraryJoint]:
     return library.library_joints(model, slices)
 
 
-def pin_links(model: Model, pin_model: Any) -> list[PinLink]:
-    """Each link of the file with Pinocchio's placement and inertia.
+def pin_links(model: Model, pin_model: Any) -> PinLinks:
+    """The links of the file with Pinocchio's placements and inertias.
 
     Pinocchio keeps the inertia of a link apart unless massive links are fixed to it; then only the sum is there, and
     the link's own part is the file's (that the sum is right, `differences` has shown).
     """
-    links = []
+    links, frames, merged = [], _frames(pin_model), _merged(model, _placed(model))
     for i, (joint, link) in enumerate(zip(model.joints, model.links, strict=True)):
         fixed = joint.nv == 0
-        frame = pin_model.frames[pin_model.getFrameId(link.name, pin.FrameType.BODY)]
+        frame = frames[pin.FrameType.BODY, link.name]
         if fixed:
-            inertia = pin_model.frames[pin_model.getFrameId(joint.name, pin.FrameType.FIXED_JOINT)].inertia
-        elif any(model.links[k].mass or model.links[k].inertia.any() for k in _merged(model, i)):
+            inertia = frames[pin.FrameType.FIXED_JOINT, joint.name].inertia
+        elif any(model.links[part.link].mass or model.links[part.link].inertia.any() for part in merged[i][1:]):
             inertia = None  # pin.Inertia refuses tensors that Pinocchio's own reader takes
         else:
             inertia = pin_model.inertias[frame.parentJoint]
         mass, com, tensor = link.mass, link.com, link.inertia
         if inertia is not None:
-            mass, com, tensor = float(inertia.mass), np.array(inertia.lever), np.array(inertia.inertia)
-        R, p = np.array(frame.placement.rotation), np.array(frame.placement.translation)
-        links.append(PinLink(fixed, int(frame.parentJoint), R, p, mass, com, tensor))
-    return links
+            mass, com, tensor = inertia.mass, inertia.lever, inertia.inertia
+        M = frame.placement
+        links.append((fixed, frame.parentJoint, M.rotation, M.translation, mass, com, tensor))
+    return PinLinks(*map(np.array, zip(*links, strict=True)))
+
+
+def _frames(pin_model: Any) -> dict[tuple[Any, str], Any]:
+    """Pinocchio's frames by type and name; it would look through all of them for each."""
+    return {(frame.type, frame.name): frame for frame in pin_model.frames}
 
 
 def differences(model: Model, pin_model: Any) -> list[str]:
@@ -135,35 +144,41 @@ def differences(model: Model, pin_model: Any) -> list[str]:
     expected = [joint.name for joint in model.joints if joint.nv]
     if sorted(built) != sorted(expected):  # an object's joints keep their order, which may be another
         return [f"moving joints: {', '.join(built)}, the file has {', '.join(expected)}"]
-    data = pin_model.createData()
-    lines = [line for i in range(len(model.joints)) for line in _joint_differences(model, pin_model, data, i)]
+    data, frames = pin_model.createData(), _frames(pin_model)
+    placed = _placed(model)
+    merged = _merged(model, placed)
+    lines: list[str] = []
+    for joint, link, place in zip(model.joints, model.links, placed, strict=True):
+        if joint.nv:
+            lines += _moving_differences(model, pin_model, data, place, merged[place.link])
+            continue
+        frame = frames[pin.FrameType.FIXED_JOINT, joint.name]
+        lines += _placement_differences(joint, place, frame.placement)
+        lines += _inertia_differences(link, _inertia(model, [_itself(place.link)]), frame.inertia)
     return [*lines, *_mimic_differences(model)]
 
 
-def _joint_differences(model: Model, pin_model: Any, data: Any, i: int) -> Iterator[str]:
-    """Placement, axis and limits of a joint; mass, centre and tensor of what it carries."""
-    joint, link, at_link = model.joints[i], model.links[i], _Placed(i, np.eye(3), np.zeros(3), 0.0)
-    placed, ancestor = _placement_on_moving(model, i)
-    expected = (placed.R, placed.p)
-    if not joint.nv:
-        frame = pin_model.frames[pin_model.getFrameId(joint.name, pin.FrameType.FIXED_JOINT)]
-        M = frame.placement
-        yield from library.placement_differences(joint, expected, M.rotation, M.translation, placed.length)
-        yield from _inertia_differences(link, _inertia(model, [at_link]), frame.inertia)
-        return
+def _moving_differences(model: Model, pin_model: Any, data: Any, placed: _Placed, body: list[_Placed]) -> Iterator[str]:
+    """Placement, axis and limits of a joint that moves; mass, centre and tensor of the body that it carries."""
+    joint, link = model.joints[placed.link], model.links[placed.link]
     number = pin_model.getJointId(joint.name)
-    parent = pin_model.getJointId(model.joints[ancestor].name) if ancestor >= 0 else 0
+    parent = pin_model.getJointId(model.joints[placed.on].name) if placed.on >= 0 else 0
     if pin_model.parents[number] != parent:
         hanging_on = pin_model.names[pin_model.parents[number]]
         yield f"joint {joint.name!r}: hangs on {hanging_on!r}, not where the file has it"
-    M, built = pin_model.jointPlacements[number], pin_model.joints[number]
-    yield from library.placement_differences(joint, expected, M.rotation, M.translation, placed.length)
+    built = pin_model.joints[number]
+    yield from _placement_differences(joint, placed, pin_model.jointPlacements[number])
     if _snapped_axis(joint, data.joints[number].S) is None:
         yield from library.differs(f"joint {joint.name!r} axis", _subspace(joint), data.joints[number].S, 1.0)
     if joint.type.has_axis:
         yield from library.limit_differences(joint, _limits(pin_model, built.idx_q, built.idx_v))
-    merged = [at_link, *(_placement_on_moving(model, k)[0] for k in _merged(model, i))]
-    yield from _inertia_differences(link, _inertia(model, merged), pin_model.inertias[number])
+    yield from _inertia_differences(link, _inertia(model, body), pin_model.inertias[number])
+
+
+def _placement_differences(joint: Joint, expected: _Placed, built: Any) -> Iterator[str]:
+    return library.placement_differences(
+        joint, (expected.R, expected.p), built.rotation, built.translation, expected.length
+    )
 
 
 def _limits(pin_model: Any, q: int, v: int) -> dict[str, float]:
@@ -224,29 +239,46 @@ def _subspace(joint: Joint) -> Array:
 
 
 class _Placed(NamedTuple):
-    """Where link i is on the link that carries it: R, p [m], and the lengths that p adds up, in which it may cancel."""
+    """Where link i is on the nearest link further in that a moving joint carries.
+
+    Attributes:
+        link: i.
+        R, p: there [m].
+        length: what p adds up, in which it may cancel [m].
+        on: the other link's index; -1 is the root.
+    """
 
     link: int
     R: Array
     p: Array
     length: float
+    on: int
 
 
-def _placement_on_moving(model: Model, i: int) -> tuple[_Placed, int]:
-    """Link i on the nearest link further in that a moving joint carries, and that link's index (-1: root)."""
-    joint = model.joints[i]
-    R, p, length, k = joint.R, joint.p, float(norm(joint.p)), joint.parent
-    while k >= 0 and model.joints[k].nv == 0:
-        R, p = model.joints[k].R @ R, model.joints[k].p + model.joints[k].R @ p
-        length += float(norm(model.joints[k].p))
-        k = model.joints[k].parent
-    return _Placed(i, R, p, length), k
+def _itself(i: int) -> _Placed:
+    return _Placed(i, np.eye(3), np.zeros(3), 0.0, i)
 
 
-def _merged(model: Model, i: int) -> list[int]:
-    """The links that fixed joints hold to link i, which a moving joint carries."""
-    fixed = (k for k, joint in enumerate(model.joints) if joint.nv == 0)
-    return [k for k in fixed if _placement_on_moving(model, k)[1] == i]
+def _placed(model: Model) -> list[_Placed]:
+    """The place of each link."""
+    placed: list[_Placed] = []
+    for i, joint in enumerate(model.joints):
+        R, p, length, on = joint.R, joint.p, float(norm(joint.p)), joint.parent
+        if on >= 0 and not model.joints[on].nv:
+            carrier = placed[on]
+            R, p = carrier.R @ R, carrier.p + carrier.R @ p
+            length, on = carrier.length + length, carrier.on
+        placed.append(_Placed(i, R, p, length, on))
+    return placed
+
+
+def _merged(model: Model, placed: list[_Placed]) -> dict[int, list[_Placed]]:
+    """By index of a link that a moving joint carries, the links that are one body with it, itself first."""
+    bodies = {i: [_itself(i)] for i, joint in enumerate(model.joints) if joint.nv}
+    for place in placed:
+        if not model.joints[place.link].nv and place.on >= 0:
+            bodies[place.on].append(place)
+    return bodies
 
 
 def _inertia(model: Model, parts: list[_Placed]) -> tuple[library.Inertia, library.Scales]:

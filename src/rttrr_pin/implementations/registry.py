@@ -1,7 +1,8 @@
 """From what a user writes to an implementation: a name, an object, a function, a table of results, a command.
 
 A new one is a module with a class that fulfils `Implementation` and takes a `Model`, and a line in `BUILT_IN`; from
-another package, an entry point of the group `rttrr_pin.implementations` that names such a class.
+another package, an entry point of the group `rttrr_pin.implementations` that names such a class. Each module is loaded
+when one of its kind is asked for.
 """
 
 from __future__ import annotations
@@ -20,10 +21,7 @@ import numpy as np
 
 from rttrr_pin.core.model import Model
 from rttrr_pin.errors import ImplementationError, InputError, RttrrError, UnknownNameError, told
-from rttrr_pin.implementations.function import Function
-from rttrr_pin.implementations.program import Program
 from rttrr_pin.implementations.protocol import Implementation
-from rttrr_pin.implementations.table import READERS, Table
 
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint, EntryPoints
@@ -69,6 +67,8 @@ def make_implementation(source: Source, model: Model) -> Implementation:
     if isinstance(source, Implementation) and not isinstance(source, type):
         return source
     if callable(source):
+        from rttrr_pin.implementations.function import Function
+
         return Function(source, model)
     if not isinstance(source, str | os.PathLike):
         raise InputError(
@@ -81,9 +81,13 @@ def make_implementation(source: Source, model: Model) -> Implementation:
     for point in _registered():
         if point.name == text:
             return _of_package(point, model)
+    from rttrr_pin.implementations.table import READERS, Table
+
     if Path(text).suffix.lower() in READERS and (Path(text).is_file() or not _is_command(text)):
         return Table(Path(text), model)
     if _is_command(text):
+        from rttrr_pin.implementations.program import Program
+
         return Program(text, model)
     module, colon, attribute = text.partition(":")
     if colon and all(part.isidentifier() for part in (*module.split("."), *attribute.split("."))):

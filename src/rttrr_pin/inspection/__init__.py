@@ -2,23 +2,32 @@
 
 from __future__ import annotations
 
-from rttrr_pin.inspection.bodies import LinkRow
-from rttrr_pin.inspection.checks import Finding, Severity
-from rttrr_pin.inspection.parsers import PARSERS, RULES, Behaviour, RuleMatch, Verdict
-from rttrr_pin.inspection.run import CHECKS, Inspection, Repaired, inspect, repair
+from typing import TYPE_CHECKING
 
-__all__ = [
-    "CHECKS",
-    "PARSERS",
-    "RULES",
-    "Behaviour",
-    "Finding",
-    "Inspection",
-    "LinkRow",
-    "Repaired",
-    "RuleMatch",
-    "Severity",
-    "Verdict",
-    "inspect",
-    "repair",
-]
+from rttrr_pin.lazy import lazy
+
+if TYPE_CHECKING:
+    from rttrr_pin.inspection.bodies import LinkRow as LinkRow
+    from rttrr_pin.inspection.checks import Finding as Finding
+    from rttrr_pin.inspection.checks import Severity as Severity
+    from rttrr_pin.inspection.parsers import RULES as RULES
+    from rttrr_pin.inspection.rule import PARSERS as PARSERS
+    from rttrr_pin.inspection.rule import Behaviour as Behaviour
+    from rttrr_pin.inspection.rule import RuleMatch as RuleMatch
+    from rttrr_pin.inspection.rule import Verdict as Verdict
+    from rttrr_pin.inspection.run import CHECKS as CHECKS
+    from rttrr_pin.inspection.run import Inspection as Inspection
+    from rttrr_pin.inspection.run import Repaired as Repaired
+    from rttrr_pin.inspection.run import inspect as inspect
+    from rttrr_pin.inspection.run import repair as repair
+
+__getattr__, __dir__, __all__ = lazy(
+    __name__,
+    {
+        "bodies": ("LinkRow",),
+        "checks": ("Finding", "Severity"),
+        "parsers": ("RULES",),
+        "rule": ("PARSERS", "Behaviour", "RuleMatch", "Verdict"),
+        "run": ("CHECKS", "Inspection", "Repaired", "inspect", "repair"),
+    },
+)

@@ -6,10 +6,13 @@ import enum
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from rttrr_pin.inspection.shapes import Looks, looks_of
 from rttrr_pin.urdf.document import UrdfDocument, UrdfJoint, UrdfLink
 from rttrr_pin.urdf.inertial import UrdfInertial
+
+if TYPE_CHECKING:
+    from rttrr_pin.inspection.shapes import Looks
 
 
 class Severity(enum.StrEnum):
@@ -83,6 +86,8 @@ class Subject:
 
     def looks(self, link: UrdfLink) -> Looks:
         """The geometry of a link, loaded once."""
+        from rttrr_pin.inspection.shapes import looks_of  # what counts errors alone does without
+
         if link.name not in self._looks:
             self._looks[link.name] = looks_of(link, self.folder, self.document.packages)
         return self._looks[link.name]

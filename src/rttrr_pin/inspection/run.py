@@ -20,24 +20,17 @@ from rttrr_pin.inspection.bodies import LinkRow, centre_of_mass, tree
 from rttrr_pin.inspection.cases import cases
 from rttrr_pin.inspection.causes import cause_of
 from rttrr_pin.inspection.checks import Check, Edit, Finding, Severity, Subject
-from rttrr_pin.inspection.file_faults import FILE_CHECKS, FaultCheck
+from rttrr_pin.inspection.file_faults import FILE_CHECKS
 from rttrr_pin.inspection.merged import merged_links
 from rttrr_pin.inspection.parsers import Verdict, verdicts
+from rttrr_pin.inspection.telling import OF_PLACEHOLDER, OF_TENSOR, checks_of, told
 from rttrr_pin.urdf.document import UrdfDocument
 from rttrr_pin.urdf.parser import read_document
 
 if TYPE_CHECKING:
     from rttrr_pin.robot import Robot
 
-CHECKS = (
-    tuple(
-        check
-        for module in (physics, plausibility, structure)
-        for check in vars(module).values()
-        if isinstance(check, Check)
-    )
-    + FILE_CHECKS
-)
+CHECKS = (*checks_of(physics, plausibility, structure), *FILE_CHECKS)
 """All checks, in the order of their modules and of the lines there, which is that of their ids."""
 
 
@@ -144,7 +137,7 @@ def inspect_document(
     checks = chosen(tuple(select), tuple(ignore))
     subject = Subject(document, document.folder if folder is None else Path(folder))
     with np.errstate(all="ignore"):  # 1e308 is a number; what overflows is shown as inf, and no verdict rests on it
-        findings = _once(_explained(subject, finding) for check in checks for finding in check.findings(subject))
+        findings = told(_explained(subject, finding) for check in checks for finding in check.findings(subject))
         links = tuple(tree(document))
         mass = sum(link.mass for link in links)
         return Inspection(
@@ -158,31 +151,8 @@ def inspect_document(
         )
 
 
-def count_errors(document: object) -> int:
-    """How many errors `inspect` finds in a robot's file; none where there is no file.
-
-    Meshes are not opened, which can take longer than a comparison of torques: no check that needs them finds errors.
-    """
-    if not isinstance(document, UrdfDocument):
-        return 0
-    subject = Subject(document, None)
-    checks = (check for check in CHECKS if check.severity is Severity.ERROR or isinstance(check, FaultCheck))
-    with np.errstate(all="ignore"):
-        findings = _once(finding for check in checks for finding in check.findings(subject))
-    return sum(finding.severity is Severity.ERROR for finding in findings)
-
-
-OF_TENSOR = ("P102", "P104", "P105", "G205", "P106", "G201", "G202", "G209", "P108", "P107")
-"""Checks of the six numbers of one tensor, the telling ones first."""
-
 SMALL_SHARE = 0.01
 """Of a body, what hardly changes a torque."""
-
-OF_LINK = (("P102", "P103", "P110"), ("G205", "G203"), OF_TENSOR)
-"""Of each of these groups a link has one finding, the first: no mass, another mass, another tensor than is meant."""
-
-OF_PLACEHOLDER = (*OF_TENSOR, "P103", "P110", "G203", "G204")
-"""Of a placeholder there is nothing more to say."""
 
 
 def _explained(subject: Subject, finding: Finding) -> Finding:
@@ -205,22 +175,6 @@ def _negligible(subject: Subject, name: str) -> bool:
         0.0 < float(inertial.mass) < SMALL_SHARE * body.mass
         and np.abs(inertial.tensor).max() < SMALL_SHARE * np.trace(body.inertia)
     )
-
-
-def _once(findings: Iterable[Finding]) -> list[Finding]:
-    """Without those of which a telling one of the same group is said of the same link."""
-    everything = list(findings)
-    ids: dict[str, set[str]] = {finding.name: set() for finding in everything}
-    for finding in everything:
-        ids[finding.name].add(finding.id)
-    placeholders = {finding.name for finding in everything if finding.cause == "placeholder"}
-
-    def covered(finding: Finding) -> bool:
-        groups = (OF_PLACEHOLDER,) if finding.name in placeholders else OF_LINK
-        before = [group[: group.index(finding.id)] for group in groups if finding.id in group]
-        return any(id in ids[finding.name] for group in before for id in group)
-
-    return [finding for finding in everything if not covered(finding)]
 
 
 def chosen(select: tuple[str, ...], ignore: tuple[str, ...]) -> list[Check]:

@@ -10,9 +10,9 @@ from typing import Any
 
 from lxml import etree
 
+from rttrr_pin.core.arrays import angles_of
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.model import Document, Link, Model
-from rttrr_pin.core.solids import angles_of
 from rttrr_pin.urdf.document import UrdfDocument
 from rttrr_pin.urdf.parser import read_document
 from rttrr_pin.urdf.sources import Source

@@ -10,8 +10,7 @@ from typing import TypeVar
 
 import numpy as np
 
-from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.solids import angles_of, rotation
+from rttrr_pin.core.arrays import Array, angles_of, rotation
 from rttrr_pin.urdf.decimals import Number, NumberList
 
 T = TypeVar("T")

@@ -11,11 +11,10 @@ from collections.abc import Iterable
 from dataclasses import asdict
 from xml.etree import ElementTree as ET
 
-from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.arrays import Array, angles_of
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints import CONTINUOUS, JointType
 from rttrr_pin.core.model import Link, Model
-from rttrr_pin.core.solids import angles_of
 from rttrr_pin.urdf.inertial import ENTRIES
 from rttrr_pin.urdf.vocabulary import ATTRIBUTES
 

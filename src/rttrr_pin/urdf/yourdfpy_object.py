@@ -17,7 +17,7 @@ from xml.etree import ElementTree as ET
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.core.solids import angles_of, rotation
+from rttrr_pin.core.arrays import angles_of, rotation
 from rttrr_pin.errors import UrdfError
 from rttrr_pin.urdf.vocabulary import ATTRIBUTES
 from rttrr_pin.urdf.writer import tensor_words, written

@@ -2,39 +2,33 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
-from rttrr_pin.core.scalars import EPS
-from rttrr_pin.validation.compare import Comparison, Row
-from rttrr_pin.validation.run import Validation, validate
-from rttrr_pin.validation.sampling import SAMPLINGS, Sampler
-from rttrr_pin.validation.state import StateComparison, StateReport, compare_state
+from rttrr_pin.lazy import lazy
 
 if TYPE_CHECKING:
-    from rttrr_pin.validation.many import BASES, Entry, Task, validate_many
+    from rttrr_pin.core.scalars import EPS as EPS
+    from rttrr_pin.validation.compare import Comparison as Comparison
+    from rttrr_pin.validation.compare import Row as Row
+    from rttrr_pin.validation.many import BASES as BASES
+    from rttrr_pin.validation.many import Entry as Entry
+    from rttrr_pin.validation.many import Task as Task
+    from rttrr_pin.validation.many import validate_many as validate_many
+    from rttrr_pin.validation.run import Validation as Validation
+    from rttrr_pin.validation.run import validate as validate
+    from rttrr_pin.validation.sampling import SAMPLINGS as SAMPLINGS
+    from rttrr_pin.validation.sampling import Sampler as Sampler
+    from rttrr_pin.validation.state import StateComparison as StateComparison
+    from rttrr_pin.validation.state import StateReport as StateReport
+    from rttrr_pin.validation.state import compare_state as compare_state
 
-__all__ = [
-    "BASES",
-    "EPS",
-    "SAMPLINGS",
-    "Comparison",
-    "Entry",
-    "Row",
-    "Sampler",
-    "StateComparison",
-    "StateReport",
-    "Task",
-    "Validation",
-    "compare_state",
-    "validate",
-    "validate_many",
-]
-
-
-def __getattr__(name: str) -> Any:
-    """Names of `many`, which loads multiprocessing: one robot does without."""
-    if name not in ("BASES", "Entry", "Task", "validate_many"):
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from rttrr_pin.validation import many
-
-    return getattr(many, name)
+__getattr__, __dir__, __all__ = lazy(
+    __name__,
+    {
+        "compare": ("EPS", "Comparison", "Row"),
+        "many": ("BASES", "Entry", "Task", "validate_many"),
+        "run": ("Validation", "validate"),
+        "sampling": ("SAMPLINGS", "Sampler"),
+        "state": ("StateComparison", "StateReport", "compare_state"),
+    },
+)

@@ -104,7 +104,7 @@ def search(evaluations: int, json: str | None, quiet: bool, **run: Any) -> int:
 
 def _faults(robot: Robot, source: str) -> list[str]:
     """That both programs compute what the file says does not mean that the file says what a body can be."""
-    from rttrr_pin.inspection.run import count_errors
+    from rttrr_pin.inspection.telling import count_errors
 
     errors = count_errors(robot.model.document)
     count = "1 error" if errors == 1 else f"{errors} errors"

@@ -222,7 +222,7 @@ def _end_with_the_parent() -> None:
 
 def _entry(name: str, path: Path, base: Base, task: Task) -> Entry:
     """One robot on one base."""
-    from rttrr_pin.inspection.run import count_errors
+    from rttrr_pin.inspection.telling import count_errors
 
     start = time.perf_counter()
     notes: tuple[str, ...] = ()

@@ -8,14 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from importlib import import_module
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.compile.call_program import CallProgram
-from rttrr_pin.compile.program import Field, Program
 from rttrr_pin.errors import InputError, UnknownNameError
+
+if TYPE_CHECKING:  # what is on disk needs nothing of what compiles
+    from rttrr_pin.compile.call_program import CallProgram
+    from rttrr_pin.compile.fields import Field
+    from rttrr_pin.compile.program import Program
 
 Array = NDArray[Any]
 """float64 or float32 in, float64 out; (N, width) with any strides."""

@@ -25,7 +25,8 @@ from numpy.typing import NDArray
 
 from rttrr_pin.compile.emit import Array, Task
 from rttrr_pin.compile.expression import Op
-from rttrr_pin.compile.program import Field, Program
+from rttrr_pin.compile.fields import Field
+from rttrr_pin.compile.program import Program
 from rttrr_pin.errors import InputError
 
 COMPILERS = ("cc", "gcc", "clang")

@@ -1,7 +1,6 @@
 """Machine code for this processor by LLVM, through llvmlite.
 
-Straight from the program to LLVM's assembly: vectors of states are written as vectors, so that nothing is left to the
-luck of an optimiser.
+Code that is on disk is loaded by what is here; `llvm_module` makes it.
 """
 
 from __future__ import annotations
@@ -12,32 +11,20 @@ import sys
 from collections.abc import Sequence
 from functools import cache
 from importlib import import_module
+from typing import TYPE_CHECKING
 
 import llvmlite
 import llvmlite.binding as llvm
 import numpy as np
-from llvmlite.binding.newpassmanagers import NewPassManager
 from numpy.typing import NDArray
 
-from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.emit import Array, One, Task, task
-from rttrr_pin.compile.emit.llvm_body import body
-from rttrr_pin.compile.emit.llvm_calls import calls
-from rttrr_pin.compile.emit.llvm_vectors import Layout
-from rttrr_pin.compile.program import Field, Program
 from rttrr_pin.compile.threads import COMPILING
 
-BLOCK = 64
-"""States in a block."""
-
-CACHE_LINES = 2 * 8
-"""Float64 by which columns are set apart beyond the block, so that they do not fall on the same lines of the cache."""
-
-FIRST_LEVEL = 24 * 1024
-"""Bytes that a block's inputs and outputs may take, to stay in the first level of the cache with room for the rest."""
-
-SECOND_LEVEL = 512 * 1024
-"""Bytes that all columns of a block may take in a schedule, which goes through them twice."""
+if TYPE_CHECKING:
+    from rttrr_pin.compile.call_program import CallProgram
+    from rttrr_pin.compile.fields import Field
+    from rttrr_pin.compile.program import Program
 
 OPTIMISATION = 2
 
@@ -87,40 +74,12 @@ class LlvmEmitter:
             cpu=self.processor, features=self.features, opt=OPTIMISATION, jit=True, reloc="pic", codemodel="jitdefault"
         )
 
-    def layout(self, program: Program | CallProgram) -> Layout:
-        """How blocks of this program lie in memory: as many states as keep its columns in the nearest cache."""
-        if isinstance(program, CallProgram):
-            size, width = SECOND_LEVEL, program.columns
-        else:
-            size, width = FIRST_LEVEL, program.width_in + program.width_out
-        w = lanes(self.processor, self.features)
-        block = min(BLOCK, max(w, size // (8 * max(width, 1)) // w * w))
-        return Layout(w, block, block + w)
-
-    def assembly(self, program: Program | CallProgram) -> llvm.ModuleRef:
-        """The program as LLVM's assembly."""
-        from rttrr_pin.compile.emit.llvm_driver import driver  # llvmlite's builder, not needed for what is on disk
-
-        layout = self.layout(program)
-        if isinstance(program, CallProgram):
-            text, between = calls(program, layout), program.between
-        else:
-            text, between = body(program, layout)
-        module = llvm.parse_assembly(driver(program, layout, between))
-        options = llvm.create_pipeline_tuning_options(speed_level=OPTIMISATION)
-        options.loop_vectorization = options.slp_vectorization = options.loop_unrolling = False
-        builder = llvm.create_pass_builder(self._machine(), options)
-        passes = builder.getModulePassManager()
-        passes.run(module, builder)
-        NewPassManager._dispose(passes)  # a method that llvmlite's own classes hide: passes would stay, 0.1 MB of them
-        passes.detach()
-        module.link_in(llvm.parse_assembly(text))  # straight lines: there is nothing to be found in them
-        module.verify()
-        return module
-
     def emit(self, program: Program | CallProgram) -> bytes:
         """Object code."""
-        code: bytes = self._machine().emit_object(self.assembly(program))
+        from rttrr_pin.compile.emit.llvm_module import module  # llvmlite's builder, not needed for what is on disk
+
+        machine = self._machine()
+        code: bytes = machine.emit_object(module(program, lanes(self.processor, self.features), machine, OPTIMISATION))
         return code
 
     def load(self, code: bytes, inputs: Sequence[Field], outputs: Sequence[Field]) -> LlvmExecutable:

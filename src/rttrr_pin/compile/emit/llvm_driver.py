@@ -33,7 +33,8 @@ from rttrr_pin.compile.emit.llvm_columns import (
 )
 from rttrr_pin.compile.emit.llvm_python import python_entry
 from rttrr_pin.compile.emit.llvm_vectors import Layout
-from rttrr_pin.compile.program import Field, Program
+from rttrr_pin.compile.fields import Field
+from rttrr_pin.compile.program import Program
 
 VOID = ir.VoidType()
 

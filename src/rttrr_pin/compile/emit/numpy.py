@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.emit import Array, Task
 from rttrr_pin.compile.expression import LEAVES, Op
-from rttrr_pin.compile.program import Field, Program
+from rttrr_pin.compile.fields import Field
+from rttrr_pin.compile.program import Program
 
 BLOCK = 512
 """States computed at a time."""
