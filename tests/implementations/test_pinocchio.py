@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from dataclasses import replace
 from typing import Any
 
@@ -94,6 +95,35 @@ def test_a_state_gives_the_same_bits_in_any_batch(payload: str | None) -> None:
             assert part is not None and of_whole is not None
             for key, x in part.items():
                 np.testing.assert_array_equal(x[0], of_whole[key][k])
+
+
+def test_fixed_links_cost_in_proportion_to_their_number() -> None:
+    """Counted in calls, of Python and of C, which no load of the machine changes."""
+
+    def calls(links: int) -> int:
+        robot = rttrr_pin.load(random_chain(3, ("revolute", *["fixed"] * links)))
+        batch = Sampler(robot.model).draw(0, 2)
+        count = 0
+
+        def enter(frame: object, event: str, argument: object) -> None:
+            nonlocal count
+            count += event in ("call", "c_call")
+
+        sys.setprofile(enter)
+        try:
+            make_implementation("pinocchio", robot.model).evaluate(batch)
+        finally:
+            sys.setprofile(None)
+        return count
+
+    few, some, many = map(calls, (20, 60, 140))
+    assert (many - some) / 80 <= 1.05 * (some - few) / 40
+
+
+def test_turned_fixed_links_in_a_long_row_are_no_mismatch() -> None:
+    """Each turn rounds once more: the placement of the last is a product of all."""
+    robot = rttrr_pin.load(random_chain(3, ("revolute", *["fixed"] * 250, "revolute")))
+    make_implementation("pinocchio", robot.model)
 
 
 @pytest.mark.parametrize("mimic", [Mimic(0, -0.7, 0.2), Mimic(0, 0.7, 0.3)], ids=["multiplier", "offset"])

@@ -185,11 +185,14 @@ def shown(x: Array) -> str:
 
 
 def placement_differences(
-    joint: Joint, expected: tuple[Array, Array], R: Array, p: Array, scale: float = 0.0
+    joint: Joint, expected: tuple[Array, Array], R: Array, p: Array, scale: float = 0.0, turns: int = 1
 ) -> Iterator[str]:
-    """What of a joint's placement R, p [m] is not as expected; `scale` is the sum of the lengths that p adds up."""
-    yield from differs(f"joint {joint.name!r} placement R", expected[0], R, 1.0)
-    yield from differs(f"joint {joint.name!r} placement p", expected[1], p, scale)
+    """What of a joint's placement R, p [m] is not as expected.
+
+    `scale` is the sum of the lengths that p adds up, `turns` the number of rotations that R is the product of.
+    """
+    yield from differs(f"joint {joint.name!r} placement R", expected[0], R, turns)
+    yield from differs(f"joint {joint.name!r} placement p", expected[1], p, scale * turns)
 
 
 Inertia = tuple[float, Array, Array]

@@ -207,9 +207,9 @@ class Pinocchio:
             at_body = np.concatenate([f, n + np.cross(p, f)], axis=1)
             behind[:, self._carrier[i]] += _acting(at_body, force, norm(p))
         for load in loads:
-            if (p := self._inward[load.link]) >= 0:
+            if (carrier := self._inward[load.link]) >= 0:
                 link = self.links.at(load.link)
-                behind[:, p] += _acting(link.to_joint(load.f, load.n), load.f, link.arm)
+                behind[:, carrier] += _acting(link.to_joint(load.f, load.n), load.f, link.arm)
         return behind
 
     def _without_inertia(self) -> NDArray[np.bool_]:
@@ -218,7 +218,8 @@ class Pinocchio:
         for i in self._hanging:
             acting[self._carrier[i]] += 1
         sum_inwards(self._inward, acting[None])
-        return self.links.fixed & (acting == 0)
+        idle: NDArray[np.bool_] = self.links.fixed & (acting == 0)
+        return idle
 
     def _reach(self, motion: Motion) -> Array:
         """At most how far each joint's origin is from that of the joint further in, (N, njoints) [m]."""

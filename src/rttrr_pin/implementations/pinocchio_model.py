@@ -49,7 +49,7 @@ class PinLinks(NamedTuple):
 
     def at(self, which: int | NDArray[np.bool_]) -> PinLinks:
         """One of them, or some."""
-        return PinLinks(*(x[which] for x in self))
+        return self._make(x[which] for x in self)
 
     @property
     def arm(self) -> Array:
@@ -59,7 +59,8 @@ class PinLinks(NamedTuple):
     @property
     def massive(self) -> NDArray[np.bool_]:
         """Which have any inertia."""
-        return (self.mass != 0.0) | self.inertia.any(axis=(-2, -1))
+        massive: NDArray[np.bool_] = (self.mass != 0.0) | self.inertia.any(axis=(-2, -1))
+        return massive
 
     def to_joint(self, f: Array, n: Array) -> Array:
         """Forces and moments at the links' origins, (N, ..., 3) each, at the joints': (N, ..., 6)."""
@@ -177,7 +178,7 @@ def _moving_differences(model: Model, pin_model: Any, data: Any, placed: _Placed
 
 def _placement_differences(joint: Joint, expected: _Placed, built: Any) -> Iterator[str]:
     return library.placement_differences(
-        joint, (expected.R, expected.p), built.rotation, built.translation, expected.length
+        joint, (expected.R, expected.p), built.rotation, built.translation, expected.length, expected.turns
     )
 
 
@@ -245,6 +246,7 @@ class _Placed(NamedTuple):
         link: i.
         R, p: there [m].
         length: what p adds up, in which it may cancel [m].
+        turns: how many rotations R is the product of.
         on: the other link's index; -1 is the root.
     """
 
@@ -252,23 +254,23 @@ class _Placed(NamedTuple):
     R: Array
     p: Array
     length: float
+    turns: int
     on: int
 
 
 def _itself(i: int) -> _Placed:
-    return _Placed(i, np.eye(3), np.zeros(3), 0.0, i)
+    return _Placed(i, np.eye(3), np.zeros(3), 0.0, 1, i)
 
 
 def _placed(model: Model) -> list[_Placed]:
     """The place of each link."""
     placed: list[_Placed] = []
     for i, joint in enumerate(model.joints):
-        R, p, length, on = joint.R, joint.p, float(norm(joint.p)), joint.parent
-        if on >= 0 and not model.joints[on].nv:
-            carrier = placed[on]
-            R, p = carrier.R @ R, carrier.p + carrier.R @ p
-            length, on = carrier.length + length, carrier.on
-        placed.append(_Placed(i, R, p, length, on))
+        place = _Placed(i, joint.R, joint.p, float(norm(joint.p)), 1, joint.parent)
+        if place.on >= 0 and not model.joints[place.on].nv:
+            _, R, p, length, turns, on = placed[place.on]
+            place = _Placed(i, R @ place.R, p + R @ place.p, length + place.length, turns + 1, on)
+        placed.append(place)
     return placed
 
 
