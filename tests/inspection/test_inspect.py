@@ -214,7 +214,7 @@ def test_errors_are_counted_without_looking_at_meshes(check: str, monkeypatch: p
     twice += '<child link="b"/><axis xyz="1 0 0"/><axis xyz="0 1 0"/></joint></robot>'  # a warning, were they equal
     documents = [read_document(text, tolerant=True) for text in (twice, *(text for text, _ in CASES[check]))]
     wanted = [inspect_document(document).counts[Severity.ERROR] for document in documents]
-    monkeypatch.setattr("rttrr_pin.inspection.checks.looks_of", lambda *_: pytest.fail("a mesh was opened"))
+    monkeypatch.setattr("rttrr_pin.inspection.shapes.looks_of", lambda *_: pytest.fail("a mesh was opened"))
     assert [count_errors(document) for document in documents] == wanted
 
 

@@ -49,7 +49,7 @@ class PinLinks(NamedTuple):
 
     def at(self, which: int | NDArray[np.bool_]) -> PinLinks:
         """One of them, or some."""
-        return self._make(x[which] for x in self)
+        return PinLinks._make(x[which] for x in self)
 
     @property
     def arm(self) -> Array:
