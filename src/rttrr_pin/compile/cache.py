@@ -112,7 +112,7 @@ def read(name: str) -> bytes | None:
 
 
 def _contents(path: Path) -> bytes:
-    """The bytes of a file that is ours; a pipe in its place is not waited for, and a link not followed."""
+    """The bytes of a file of this user's; a pipe in its place is not waited for, and a link not followed."""
     handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK | os.O_NOFOLLOW | os.O_CLOEXEC)
     try:
         status = os.fstat(handle)

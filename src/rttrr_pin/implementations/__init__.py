@@ -1,4 +1,4 @@
-"""Whatever computes inverse dynamics: ours, other libraries, a user's function, table or program.
+"""Whatever computes inverse dynamics: this package, other libraries, a user's function, table or program.
 
 The only place that imports other dynamics libraries; each in one module, loaded when it is named.
 """

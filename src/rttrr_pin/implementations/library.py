@@ -33,10 +33,10 @@ TOLERANCE = 64 * EPS
 
 @dataclass(frozen=True, slots=True)
 class LibraryJoint:
-    """A moving joint of ours, where a library has it.
+    """A moving joint of a robot, where a library has it.
 
     Attributes:
-        joint: ours.
+        joint: the robot's.
         q: where its coordinates are in the library's q.
         v: where its rates are in the library's v, a, tau.
     """

@@ -193,7 +193,7 @@ def _in_space(x: Array) -> Array:
 def _rounding(
     compiled: Any, bodies: Sequence[int], motion: Motion, record: _Record, loads: Sequence[Load]
 ) -> dict[str, Array]:
-    """What rounds in MuJoCo's formulas and does not occur in ours: sizes times eps and operations, (N, links) each.
+    """What rounds in MuJoCo's formulas and not in the recursion's: sizes times eps and operations, (N, links) each.
 
     MuJoCo computes in world axes, about one point C for the whole robot, its centre of mass.
 

@@ -59,7 +59,7 @@ MADE_OF = {
     FLOATING: (SLIDE, SLIDE, SLIDE, BALL),
     FIXED: (),
 }
-"""MuJoCo's joints that make one of ours, in the order in which they move their body."""
+"""MuJoCo's joints that make one of each type, in the order in which they move their body."""
 
 PARTS = {PLANAR: ("_TX", "_TY", "_RZ"), FIXED: ()}
 """What MuJoCo appends to the name of a joint that it makes of several, and of one that it does not make."""

@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     from importlib.metadata import EntryPoint, EntryPoints
 
 BUILT_IN = {
-    "kernel": "rttrr_pin.implementations.ours:CompiledKernel",
-    "recursion": "rttrr_pin.implementations.ours:Recursion",
+    "kernel": "rttrr_pin.implementations.own:CompiledKernel",
+    "recursion": "rttrr_pin.implementations.own:Recursion",
     "pinocchio": "rttrr_pin.implementations.pinocchio:Pinocchio",
     "mujoco": "rttrr_pin.implementations.mujoco:Mujoco",
     "lagrange": "rttrr_pin.implementations.lagrange:Lagrange",

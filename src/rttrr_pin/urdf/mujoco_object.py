@@ -109,13 +109,13 @@ class _Reader:
         inertial = float(mj.body_mass[b]), np.array(mj.body_ipos[b]), (tensor + tensor.T) / 2
         joints = range(int(mj.body_jntadr[b]), int(mj.body_jntadr[b] + mj.body_jntnum[b]))
         for j in joints:
-            kind, anchor = int(mj.jnt_type[j]), np.array(mj.jnt_pos[j])
+            joint_type, anchor = int(mj.jnt_type[j]), np.array(mj.jnt_pos[j])
             own = tree.name("joint", mj.joint(j).name, f"joint_{j}")
-            if kind == FREE:  # its coordinates are those of the body in the world
+            if joint_type == FREE:  # its coordinates are those of the body in the world
                 R, p, anchor = np.eye(3), np.zeros(3), np.zeros(3)
-            elif kind == SLIDE:
+            elif joint_type == SLIDE:
                 anchor = np.zeros(3)
-            elif kind == BALL:
+            elif joint_type == BALL:
                 raise tree.error(
                     "is a ball joint, which is none of our joint types: put three hinges in its place",
                     f'joint "{own}"',
@@ -152,8 +152,8 @@ class _Reader:
         return R @ rotation(Vector.of(axis), -ref, FLOAT.sincos).array, p
 
     def _type(self, j: int) -> Any:
-        kind = int(self.mj.jnt_type[j])
-        return {FREE: FLOATING, SLIDE: PRISMATIC}.get(kind, REVOLUTE if self.mj.jnt_limited[j] else CONTINUOUS)
+        joint_type = int(self.mj.jnt_type[j])
+        return {FREE: FLOATING, SLIDE: PRISMATIC}.get(joint_type, REVOLUTE if self.mj.jnt_limited[j] else CONTINUOUS)
 
     def _limits(self, j: int) -> Limits:
         mj = self.mj

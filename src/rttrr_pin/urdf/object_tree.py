@@ -131,7 +131,7 @@ class ObjectTree:
                 raise self.error(f"its {key} is {value}: expected a finite number that is not negative", where)
         direction = type.axis_direction
         try:
-            made = Joint(
+            joint_read = Joint(
                 name=joint,
                 type=type,
                 parent=parent,
@@ -145,7 +145,7 @@ class ObjectTree:
         except InputError as error:
             raise self.error(str(error)) from None
         self._links.append(self._link(link, inertial))
-        self._joints.append(made)
+        self._joints.append(joint_read)
         return len(self._links) - 1
 
     def follow(self, joint: int, mimic: Mimic) -> None:

@@ -63,8 +63,8 @@ def read_document(source: AnySource, reading: Reading = AS_IT_STANDS, tolerant: 
         fix = "a robot needs one at least; of a part of a robot, name the file that includes it"
         raise UrdfError(f"has no <link>: {fix}", source=file.name, line=robot.line, element="robot")
     read_links = {name: _link(name, link, version) for name, link in links.items()}
-    found = ((name, _joint(name, joint, version)) for name, joint in joints.items())
-    read_joints = {name: joint for name, joint in found if joint is not None}
+    pairs = ((name, _joint(name, joint, version)) for name, joint in joints.items())
+    read_joints = {name: joint for name, joint in pairs if joint is not None}
     check_tree(read_links, read_joints, robot, joints)
     check_mimics(read_joints, joints)
     not_modelled(root, log)

@@ -151,24 +151,24 @@ class _Reader:
 
     def _parts(self, joint: Any, name: str) -> list[_Part]:
         own = joint.extract() if hasattr(joint, "extract") else joint
-        kind = joint.shortname().removeprefix("JointModel")
+        type_name = joint.shortname().removeprefix("JointModel")
         eye, zero, q, v = np.eye(3), np.zeros(3), int(joint.idx_q), int(joint.idx_v)
-        if kind in ALIGNED:
-            return [_Part(*ALIGNED[kind], "", eye, zero, q, v)]
-        if kind in UNALIGNED:
+        if type_name in ALIGNED:
+            return [_Part(*ALIGNED[type_name], "", eye, zero, q, v)]
+        if type_name in UNALIGNED:
             S = np.ravel(joint.createData().S)  # not every one of them tells its axis
-            return [_Part(UNALIGNED[kind], S[:3] + S[3:], "", eye, zero, q, v)]
-        if kind in WHOLE:
-            return [_Part(WHOLE[kind], Z, "", eye, zero, q, v)]
-        if kind in SEVERAL:
-            return [_Part(*each, eye, zero, q + k, v + k) for k, each in enumerate(SEVERAL[kind])]
-        if kind == "Universal":
+            return [_Part(UNALIGNED[type_name], S[:3] + S[3:], "", eye, zero, q, v)]
+        if type_name in WHOLE:
+            return [_Part(WHOLE[type_name], Z, "", eye, zero, q, v)]
+        if type_name in SEVERAL:
+            return [_Part(*each, eye, zero, q + k, v + k) for k, each in enumerate(SEVERAL[type_name])]
+        if type_name == "Universal":
             axes = (np.array(own.axis1), np.array(own.axis2))
             return [_Part(REVOLUTE, axis, str(k + 1), eye, zero, q + k, v + k) for k, axis in enumerate(axes)]
-        if kind == "Composite":
+        if type_name == "Composite":
             return list(self._composite(own, name))
         raise self.tree.error(
-            f"is {kind}, which is none of our joint types ({', '.join((*ALIGNED, *UNALIGNED, *WHOLE, *SEVERAL))}, "
+            f"is {type_name}, which is none of our joint types ({', '.join((*ALIGNED, *UNALIGNED, *WHOLE, *SEVERAL))}, "
             "Universal, Composite, Mimic): model it by these",
             f'joint "{shortened(name)}"',
         )

@@ -62,8 +62,8 @@ def _link(robot: ET.Element, link: Link) -> None:
 
 
 def _joint(robot: ET.Element, model: Model, joint: Joint, child: str) -> None:
-    kind, limits = _limits(joint)
-    element = ET.SubElement(robot, "joint", name=joint.name, type=kind.name)
+    joint_type, limits = _limits(joint)
+    element = ET.SubElement(robot, "joint", name=joint.name, type=joint_type.name)
     ET.SubElement(element, "parent", link=(model.root if joint.parent < 0 else model.links[joint.parent]).name)
     ET.SubElement(element, "child", link=child)
     ET.SubElement(element, "origin", xyz=written(joint.p), rpy=written(angles_of(joint.R)))
@@ -81,12 +81,12 @@ def _joint(robot: ET.Element, model: Model, joint: Joint, child: str) -> None:
 
 def _limits(joint: Joint) -> tuple[JointType, dict[str, float]]:
     """What to call the joint's type, and its <limit>: 0 stands for a largest rate or effort that is not set."""
-    kind, own = joint.type, asdict(joint.limits)
+    joint_type, own = joint.type, asdict(joint.limits)
     finite = {key: own[key] for key in ATTRIBUTES["limit"] if math.isfinite(own[key])}
     ends = finite.keys() & {"lower", "upper"}
-    if kind.limits == "required" and kind.rotates and not ends:
-        kind = CONTINUOUS
-    if kind.limits == "required":
+    if joint_type.limits == "required" and joint_type.rotates and not ends:
+        joint_type = CONTINUOUS
+    if joint_type.limits == "required":
         lower = finite.get("lower", min(0.0, finite.get("upper", 0.0)))
         finite = {"lower": lower, "upper": finite.get("upper", max(0.0, lower))} | finite
-    return kind, finite and {"velocity": 0.0, "effort": 0.0} | finite
+    return joint_type, finite and {"velocity": 0.0, "effort": 0.0} | finite

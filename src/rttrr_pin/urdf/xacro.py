@@ -62,7 +62,7 @@ def arguments(words: Mapping[str, object]) -> dict[str, str]:
     return {name: str(value).lower() if isinstance(value, bool) else str(value) for name, value in words.items()}
 
 
-def expanded(path: Path, given: Mapping[str, object], packages: Mapping[str, Path]) -> bytes:
+def expanded(path: Path, values: Mapping[str, object], packages: Mapping[str, Path]) -> bytes:
     """The URDF that a xacro file stands for, line by line what the command `xacro FILE NAME:=VALUE ...` prints.
 
     Raises:
@@ -85,7 +85,7 @@ def expanded(path: Path, given: Mapping[str, object], packages: Mapping[str, Pat
 
     try:
         with _packages_of(substitution_args, find):
-            text: str = xacro.process_file(str(path), mappings=dict(given)).toprettyxml(indent="  ")
+            text: str = xacro.process_file(str(path), mappings=dict(values)).toprettyxml(indent="  ")
         for included in xacro.all_includes[before:]:
             note_read(Path(included))
         return text.encode()
@@ -93,7 +93,7 @@ def expanded(path: Path, given: Mapping[str, object], packages: Mapping[str, Pat
         raise UrdfError("xacro cannot expand it: a macro calls itself without end", source=str(path)) from None
     except (Exception, SystemExit) as error:  # the file's own expressions run here, and may raise anything
         files = [path, *map(Path, getattr(xacro, "all_includes", ())[before:])]
-        reason = _reason(error, _texts(files), given, folder, find)
+        reason = _reason(error, _texts(files), values, folder, find)
         raise UrdfError(f"xacro cannot expand it: {reason}", source=str(path)) from error
 
 

@@ -142,12 +142,12 @@ def _run(jobs: Sequence[Job], workers: int) -> Iterator[tuple[int, Entry]]:
             with held_back():
                 pool.append(_Worker())
         while waiting or any(worker.busy for worker in pool):
-            for place, worker in enumerate(pool):
+            for slot, worker in enumerate(pool):
                 if not worker.busy and waiting:
                     if not worker.process.is_alive():
                         with held_back():
-                            pool[place] = _Worker()
-                    pool[place].give(*waiting.popleft())
+                            pool[slot] = _Worker()
+                    pool[slot].give(*waiting.popleft())
             lines = {worker.line: worker for worker in pool if worker.busy}
             for line in connection.wait([*lines]):
                 yield lines[line].outcome()  # type: ignore[index]
@@ -166,8 +166,8 @@ class _Worker:
     """
 
     def __init__(self) -> None:
-        self.line, theirs = context.Pipe()
-        self.process = context.Process(target=_serve, args=(theirs,), daemon=True)
+        self.line, child_end = context.Pipe()
+        self.process = context.Process(target=_serve, args=(child_end,), daemon=True)
         self._job: tuple[int, Job] | None = None
         # Ctrl-C reaches all processes of a terminal. This one answers; its workers inherit that they do not, which the
         # tracker of multiprocessing would undo if it started only now.
@@ -177,7 +177,7 @@ class _Worker:
             self.process.start()
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, before)
-            theirs.close()
+            child_end.close()
 
     @property
     def busy(self) -> bool:

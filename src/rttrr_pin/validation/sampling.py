@@ -84,8 +84,8 @@ def _corners(unit: Array, k: Indices, ranges: Ranges) -> Triple:
     q, v, a = np.split(unit, 3, axis=1)
     zero = np.zeros_like(ranges.lower)
     right = np.where(ranges.angle, math.pi / 2, 0.0)
-    places = np.clip(np.stack([ranges.lower, ranges.upper, zero, right, -right]), ranges.lower, ranges.upper)
-    at = places[(q * len(places)).astype(int), np.arange(len(zero))]
+    corners = np.clip(np.stack([ranges.lower, ranges.upper, zero, right, -right]), ranges.lower, ranges.upper)
+    at = corners[(q * len(corners)).astype(int), np.arange(len(zero))]
     return at, (np.floor(3 * v) - 1) * ranges.rate, (np.floor(3 * a) - 1) * ACCELERATION
 
 
