@@ -12,6 +12,7 @@ import inspect
 import re
 import sys
 from collections.abc import Iterator
+from enum import Enum
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -20,6 +21,7 @@ PAGE = Path(__file__).with_name("api.md")
 
 PACKAGES = (
     "rttrr_pin",
+    "rttrr_pin.errors",
     "rttrr_pin.implementations",
     "rttrr_pin.validation",
     "rttrr_pin.laws",
@@ -64,6 +66,8 @@ def entry(name: str, thing: Any) -> list[str]:
         items = list(thing) if isinstance(thing, (dict, tuple, list, set)) else [thing]
         values = ", ".join(map(str, items)) if all(isinstance(item, plain) for item in items) else ""
         return [f"### `{name}`", "", f"Constant: {values or f'{len(items)} of {type(items[0]).__name__}'}"]
+    if inspect.isclass(thing) and issubclass(thing, Enum):
+        return [f"### `{name}`", "", *body(thing), "", f"One of {', '.join(f'`{own.name}`' for own in thing)}."]
     kind = "class " if inspect.isclass(thing) else ""
     lines = [f"### `{name}`", "", "```python", f"{kind}{name}{signature(thing)}", "```", "", *body(thing)]
     if inspect.isclass(thing):
@@ -91,7 +95,7 @@ def signature(thing: Any) -> str:
     except (TypeError, ValueError):
         return ""
     text = re.sub(r"\(self(, )?", "(", text, count=1)
-    text = re.sub(r"(: |-> )'([^']*)'", r"\1\2", text)
+    text = re.sub(r"(: |-> )(?:'([^']*)'|\"([^\"]*)\")", r"\1\2\3", text)
     text = re.sub(r"PosixPath\('(?:[^']*/)?([^'/]*)'\)", r"\1", text)
     return re.sub(r"<function <lambda> [^>]*>|<(function|rttrr_pin|factory)[^>]*>", "...", text)
 
@@ -100,19 +104,23 @@ def body(thing: Any) -> list[str]:
     """A docstring as Markdown: its paragraphs, and its sections as lists."""
     text = inspect.getdoc(thing) or ""
     lines: list[str] = []
-    in_section = False
+    section = ""
     for line in text.splitlines():
         heading = SECTIONS.match(line)
         if heading:
-            in_section = True
-            lines += [f"{heading[1]}:", ""]
-        elif in_section and re.match(r"^    \S", line):
+            section = heading[1]
+            lines += [f"{section}:", ""]
+        elif line and not line.startswith(" "):  # a paragraph behind a section ends it
+            section = ""
+            lines.append(line)
+        elif section in ("Returns", "Yields"):  # a paragraph, or a list of its own
+            lines.append(line.removeprefix("    "))
+        elif section and re.match(r"^    \S", line):
             name, colon, rest = line.strip().partition(": ")
             lines.append(f"- `{name}`: {rest}" if colon and " " not in name.replace(", ", ",") else f"- {line.strip()}")
-        elif in_section and line.strip():
+        elif section and line.strip():
             lines.append("  " + line.strip())
         else:
-            in_section = in_section and not line.strip()
             lines.append(line)
     return lines
 

@@ -61,7 +61,7 @@ class LazyGroup(click.Group):
     "--version", is_flag=True, is_eager=True, expose_value=False, callback=_version, help="Print the version."
 )
 def program() -> None:
-    """Validates rigid-body dynamics: a hand-written Newton-Euler recursion against Pinocchio, link by link."""
+    """Tells whether inverse dynamics are right, and if not, which link and which quantity is wrong."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:

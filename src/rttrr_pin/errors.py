@@ -9,6 +9,21 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from difflib import get_close_matches
 
+__all__ = [
+    "CacheWarning",
+    "EquationError",
+    "ImplementationError",
+    "InputError",
+    "LoadWarning",
+    "MissingJointError",
+    "ModelMismatchError",
+    "NumberError",
+    "RttrrError",
+    "ShapeError",
+    "UnknownNameError",
+    "UrdfError",
+]
+
 
 class RttrrError(Exception):
     """The base of every error that this package raises on purpose.
@@ -27,6 +42,17 @@ class RttrrError(Exception):
         for argument, option in self.options.items():
             message = message.replace(argument, option, 1)
         return message
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """By message and attributes: other processes, from which errors come back, do not know the arguments."""
+        return _again, (type(self), self.args), vars(self)
+
+
+def _again(kind: type[RttrrError], arguments: tuple[object, ...]) -> RttrrError:
+    """An error that was pickled or copied."""
+    error = kind.__new__(kind)
+    error.args = arguments
+    return error
 
 
 class InputError(RttrrError, ValueError):

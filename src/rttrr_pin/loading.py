@@ -71,7 +71,7 @@ def load(
     """
     from rttrr_pin.urdf.reader import read_urdf  # loads lxml, which a robot made from numbers does not need
 
-    if base not in ("fixed", "floating"):
+    if not isinstance(base, str) or base not in ("fixed", "floating"):
         raise InputError(f"base is {base!r}: expected 'fixed' (bolted down) or 'floating'", {"base": "--base"})
     field = None if gravity is None else _field(gravity)
     file = mjcf_path(source)
@@ -79,7 +79,10 @@ def load(
         from rttrr_pin.implementations.mjcf import mjcf_source
 
         source = mjcf_source(file)
-    model = read_urdf(source, Reading(xacro, xacro_args or {}, lenient, mimic, named_packages(packages or {})))
+    arguments = {} if xacro_args is None else xacro_args
+    model = read_urdf(
+        source, Reading(xacro, arguments, lenient, mimic, named_packages({} if packages is None else packages))
+    )
     if field is not None:
         model = model.with_gravity(field)
     if base == "floating":

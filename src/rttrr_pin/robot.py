@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import fields, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
 import numpy as np
@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from rttrr_pin.core import altered
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.batch import common_shape
 from rttrr_pin.core.dynamics import bodies
 from rttrr_pin.core.identification import (
     EFFECTS,
@@ -21,14 +22,24 @@ from rttrr_pin.core.identification import (
     random_motion,
 )
 from rttrr_pin.core.inertia import SpatialInertia
-from rttrr_pin.core.inputs import Coordinates, coordinates, finite, real, vectors
+from rttrr_pin.core.inputs import (
+    Coordinates,
+    choice,
+    coordinates,
+    finite,
+    names_of,
+    not_negative,
+    real,
+    relative_tolerance,
+    vectors,
+)
 from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.core.model import Link, Model
-from rttrr_pin.core.payload import Payloads, loads_of, payload_link
+from rttrr_pin.core.payload import Payloads, load_of, loads_of, payload_link
 from rttrr_pin.core.scalars import FLOAT
 from rttrr_pin.core.statics import WrenchEstimate, at_point, estimate, turned
 from rttrr_pin.core.wrench import RESULTS, LinkWrenches, Wrench
-from rttrr_pin.errors import InputError, NumberError, UnknownNameError
+from rttrr_pin.errors import InputError, UnknownNameError, shortened
 
 if TYPE_CHECKING:
     from rttrr_pin.compile import Kernel
@@ -50,18 +61,22 @@ class Robot:
     - ShapeError: an array has not one value for each joint, or leading axes do not broadcast.
     - NumberError: a value is NaN, inf, complex, ..., or so large that the result overflows.
     - UnknownNameError, MissingJointError: a dict's keys, or the payload's link, do not exist.
-
-    Attributes:
-        model: its links and joints as data.
     """
 
     def __init__(self, model: Model) -> None:
-        self.model = model
+        if not isinstance(model, Model):
+            raise InputError(f"model is a {type(model).__name__}: pass a Model; load(...) makes robots of files")
+        self._model = model
         self._kernels: dict[object, Kernel[Any]] = {}
 
-    def __getstate__(self) -> dict[str, object]:
+    @property
+    def model(self) -> Model:
+        """Its links and joints as data; another model is another robot, `Robot(model)`."""
+        return self._model
+
+    def __reduce__(self) -> tuple[object, ...]:
         """The data alone: a copy, or another process, compiles or reads its own kernels."""
-        return {"model": self.model, "_kernels": {}}
+        return type(self), (self.model,)
 
     def __repr__(self) -> str:
         joints = ", ".join(f"{joint.name} ({joint.type})" for joint in self.model.moving)
@@ -166,12 +181,10 @@ class Robot:
             UnknownNameError: there is no such output, or no such emitter.
             InputError: no output, or one twice; or the emitter cannot be imported.
         """
-        names = [outputs] if isinstance(outputs, str) else outputs
-        if not isinstance(names, list | tuple) or not all(isinstance(name, Hashable) for name in names):
-            raise InputError(f"outputs is {outputs!r}: pass a name, or several in a tuple, such as ('tau', 'n')")
+        names = names_of("outputs", outputs)
         if emitter is not None and not isinstance(emitter, str):
             raise InputError(f"emitter is {emitter!r}: pass its name, such as 'llvm', or None")
-        return self._kernel(outputs if isinstance(outputs, str) else tuple(outputs), emitter)
+        return self._kernel(outputs if isinstance(outputs, str) else names, emitter)
 
     def _kernel(self, outputs: str | tuple[str, ...], emitter: str | None = None) -> Kernel[Any]:
         kernel = self._kernels.get((outputs, emitter))
@@ -235,7 +248,7 @@ class Robot:
         """
         names = parameter_names(self.model, joint_effects)
         Y = self.regressor(*random_motion(self.model, len(names)), joint_effects)
-        return base_parameters(names, as_forces(self.model, Y), tolerance)
+        return base_parameters(names, as_forces(self.model, Y), relative_tolerance(tolerance))
 
     def jacobian(
         self,
@@ -255,11 +268,12 @@ class Robot:
         Raises:
             InputError: there are no such axes; or several last links and no name.
         """
-        if expressed_in not in ("link", "base"):
-            raise InputError(f"expressed_in is {expressed_in!r}: expected 'link' or 'base'")
+        choice("expressed_in", expressed_in, "link", "base")
         i = payload_link(self.model, link)
         parts = self._kernel(("link_jacobians", "link_placements"))(q)
-        J = at_point(parts["link_jacobians"][..., i, :, :], vectors("point", point))
+        J, r = parts["link_jacobians"][..., i, :, :], vectors("point", point)
+        common_shape({"q": J.shape[:-2], "point": r.shape[:-1]})
+        J = at_point(J, r)
         return turned(J, parts["link_placements"][..., i, :, :3]) if expressed_in == "base" else J
 
     def wrench_torque(self, q: Coordinates, wrench: Wrench, point: ArrayLike = (0.0, 0.0, 0.0)) -> Array:
@@ -272,8 +286,10 @@ class Robot:
             wrench: force, and moment about the point.
             point: from the origin of the link's frame, in the link's axes, (..., 3) [m].
         """
-        w = np.concatenate(np.broadcast_arrays(np.asarray(wrench.force), np.asarray(wrench.moment)), axis=-1)
+        load = load_of(self.model, wrench)
         J = self.jacobian(q, wrench.link, point, wrench.expressed_in)
+        common_shape({"q and point": J.shape[:-2], "force": load.f.shape[:-1], "moment": load.n.shape[:-1]})
+        w = np.concatenate(np.broadcast_arrays(load.f, load.n), axis=-1)
         return np.asarray(np.einsum("...ij,...i->...j", J, w))
 
     def wrench_from_torque(
@@ -301,7 +317,9 @@ class Robot:
             explain tau the smallest.
         """
         J = self.jacobian(q, link, point, expressed_in)
-        return estimate(J, coordinates("tau", tau, self.model.moving), tolerance)
+        driving = coordinates("tau", tau, self.model.moving)
+        common_shape({"q and point": J.shape[:-2], "tau": driving.shape[:-1]})
+        return estimate(J, driving, relative_tolerance(tolerance))
 
     def derivatives(
         self, q: Coordinates, v: Coordinates, a: Coordinates, payload: Payloads = None
@@ -334,6 +352,7 @@ class Robot:
         moving = [joint.name for joint in self.model.joints if joint.nv]
         if not isinstance(effects, Mapping):
             raise InputError(f"effects is a {type(effects).__name__}: pass a dict from joint name to JointEffects(...)")
+        checked: dict[str, JointEffects] = {}
         for name, own in effects.items():
             if name not in moving:
                 raise UnknownNameError("moving joint", name, moving)
@@ -341,13 +360,9 @@ class Robot:
                 raise InputError(
                     f"the entry of joint {name!r} is a {type(own).__name__}: pass JointEffects(armature=...)"
                 )
-            for effect, number in ((field.name, getattr(own, field.name)) for field in fields(own)):
-                label = f"{effect} of joint {name!r}"
-                value = finite(label, real(label, number))
-                if value.ndim or value < 0.0:
-                    message = f"{label} is {number}: expected one number that is not negative"
-                    raise NumberError(message, name=effect, joint=name, value=number)
-        joints = tuple(replace(joint, effects=effects.get(joint.name, joint.effects)) for joint in self.model.joints)
+            numbers = [not_negative(f"{x} of joint {name!r}", getattr(own, x), x, name) for x in EFFECTS]
+            checked[name] = JointEffects(*numbers)
+        joints = tuple(replace(joint, effects=checked.get(joint.name, joint.effects)) for joint in self.model.joints)
         return Robot(replace(self.model, joints=joints))
 
     def with_payload_body(
@@ -375,11 +390,9 @@ class Robot:
             NumberError: a number is not finite, or the mass is negative.
             InputError: the tensor is not symmetric, or the name is taken.
         """
-        kilograms = finite("mass", real("mass", mass))
-        if kilograms.ndim or kilograms < 0.0:
-            raise NumberError(f"mass is {mass}: expected one number that is not negative", name="mass", value=mass)
+        kilograms = not_negative("mass", mass)
         tensor = np.zeros((3, 3)) if inertia is None else finite("inertia", real("inertia", inertia))
-        body = Link(name, float(kilograms), vectors("com", com), tensor)
+        body = Link(name, kilograms, vectors("com", com), tensor)
         parent = payload_link(self.model, link)
         model = altered.with_body(self.model, body, parent)
         if model.document is not None:
@@ -411,3 +424,15 @@ class Robot:
 
             model = replace(model, document=with_fixed(model.document, model))
         return Robot(model)
+
+
+def model_of(robot: object) -> Model:
+    """The model of what should be a robot.
+
+    Raises:
+        InputError: it is something else.
+    """
+    if not isinstance(robot, Robot):
+        source = repr(shortened(robot)) if isinstance(robot, str) else "..."
+        raise InputError(f"robot is a {type(robot).__name__}: pass a Robot, such as rttrr_pin.load({source})")
+    return robot.model

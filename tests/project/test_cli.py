@@ -122,7 +122,7 @@ UNUSABLE = {
     "payload": (["validate", "--payload", "1,2,3"], "expected 6 numbers"),
     "payload-word": (["validate", "--payload", "a,b,c,d,e,f"], "expected 6 numbers"),
     "payload-link": (["validate", "--payload", "1,2,3,4,5,6", "--payload-link", "hand"], "no link is called 'hand'"),
-    "payload-link-alone": (["validate", "--payload-link", "tool"], "go with six numbers"),
+    "payload-link-alone": (["validate", "--payload-link", "tool"], "goes with a payload"),
     "payload-axes": (["validate", "--payload", "1,2,3,4,5,6", "--payload-axes", "world"], "expected link or base"),
     "payload-nan": (["validate", "--payload", "nan,2,3,4,5,6"], "expected 6 numbers"),
     "gravity": (["validate", "--gravity", "9.81"], "--gravity is '9.81': expected 3 numbers"),

@@ -9,6 +9,7 @@ from os import PathLike
 from pathlib import Path
 
 from rttrr_pin.auditing.publication import DEFINITION, Convention, Equation, Publication
+from rttrr_pin.core.inputs import path_of
 from rttrr_pin.core.model import Model
 from rttrr_pin.derivation.symbol_file import PUBLISHED, SYMBOL_KEYS, read_symbols, spell
 from rttrr_pin.derivation.symbolic_robot import Slot, SymbolicRobot, value_of_slot
@@ -60,11 +61,12 @@ def read_publication(
         packages: folders of the ROS packages that it names.
 
     Raises:
+        InputError: it is no path.
         EquationError: the file cannot be used; the message names the place and the reason.
         UrdfError, InputError: its URDF cannot be used, as in `load`.
     """
     reading = {"xacro": xacro, "xacro_args": xacro_args, "lenient": lenient, "mimic": mimic, "packages": packages}
-    path = Path(path)
+    path = path_of("path", path)
     file = read_table(path).only(FILE_KEYS)
     language = file.get("language", str, "latex")
     if language not in COORDINATES:

@@ -16,9 +16,11 @@ from rttrr_pin.auditing.publication import Convention, Equation, Publication
 from rttrr_pin.auditing.quotients import as_quotient, compare
 from rttrr_pin.auditing.read import read
 from rttrr_pin.auditing.results import AuditResult, ComponentAudit, ConventionCheck, Finding, Verdict
+from rttrr_pin.core.inputs import whole_number
+from rttrr_pin.errors import InputError
 
 
-def audit(publication: Publication, seed: int = 0, progress: Callable[[int], None] = lambda done: None) -> AuditResult:
+def audit(publication: Publication, seed: int = 0, progress: Callable[[int], None] | None = None) -> AuditResult:
     """Compare every equation of a publication with the recursion.
 
     Args:
@@ -30,8 +32,12 @@ def audit(publication: Publication, seed: int = 0, progress: Callable[[int], Non
         Verdicts and findings for every component, corrected equations, and evidence.
 
     Raises:
-        OracleError: Pinocchio cannot take the robot.
+        InputError: an argument cannot be used.
+        ImplementationError: Pinocchio cannot take the robot.
     """
+    if not isinstance(publication, Publication):
+        raise InputError(f"publication is a {type(publication).__name__}: pass what read_publication(path) returns")
+    seed = whole_number("seed", seed, 0, 2**128 - 1, "2^128 - 1")
     derived, witness = derive(publication), Witness(publication.robot, seed, publication.passive)
     printed = {equation: read(publication, equation) for equation in publication.equations if equation.names}
     divided = {equation: splits for equation, splits in printed.items() if _divides(equation, splits)}
@@ -58,7 +64,8 @@ def audit(publication: Publication, seed: int = 0, progress: Callable[[int], Non
                     matching, note = matching.as_right(), "; ".join(filter(None, (note, others[name])))
                 reason = open_.get(name, "")
                 components.append(_component(publication, equation, name, note, matching, derived[0], witness, reason))
-        progress(done)
+        if progress is not None:
+            progress(done)
     plain = {equation: splits for equation, splits in printed.items() if equation not in divided}
     checks = [_check(convention, publication, plain, derived, components) for convention in publication.conventions]
     return AuditResult(publication, tuple(components), tuple(checks), seed)

@@ -12,6 +12,7 @@ from rttrr_pin.auditing.reading.abbreviations import collected, defined_in_latex
 from rttrr_pin.auditing.reading.nodes import Atom, Group
 from rttrr_pin.auditing.reading.python import defined_in_python
 from rttrr_pin.auditing.reading.vocabulary import Vocabulary
+from rttrr_pin.core.arrays import Rebuilt
 from rttrr_pin.derivation.symbolic_robot import SymbolicRobot
 from rttrr_pin.derivation.symbols import ACCELERATION, FORCE, LENGTH, MOMENT, Dimension, Role
 
@@ -88,7 +89,7 @@ class Convention:
 
 
 @dataclass(frozen=True)
-class Publication:
+class Publication(Rebuilt):
     """Equations with all that they assume.
 
     Attributes:

@@ -11,6 +11,7 @@ from typing import Any
 from rttrr_pin.auditing.differences import Kind
 from rttrr_pin.auditing.evidence import Evidence
 from rttrr_pin.auditing.publication import DEFINITION, Convention, Publication
+from rttrr_pin.reporting.results import Summarised, finite
 
 SCHEMA = 1
 """Of the JSON; it grows when a key changes its meaning or goes."""
@@ -137,8 +138,8 @@ class Totals:
     dimensionally_wrong: int
 
 
-@dataclass(frozen=True)
-class AuditResult:
+@dataclass(frozen=True, eq=False, repr=False)
+class AuditResult(Summarised):
     """The audit of a publication.
 
     Attributes:
@@ -200,28 +201,30 @@ class AuditResult:
     def to_dict(self) -> dict[str, Any]:
         """The whole audit as data for JSON."""
         totals, publication = self.totals, self.publication
-        return {
-            "schema": SCHEMA,
-            "passed": self.passed,
-            "title": publication.title,
-            "source": publication.source,
-            "language": publication.language,
-            "equations": [equation.number for equation in publication.equations],
-            "seed": self.seed,
-            "notes": list(self.notes),
-            "totals": {
-                "components": totals.components,
-                **{str(verdict): number for verdict, number in totals.verdicts.items()},
-                "findings": totals.findings,
-                "kinds": {str(kind): number for kind, number in totals.kinds.items()},
-                "dimensionally_wrong": totals.dimensionally_wrong,
-            },
-            "conventions": [
-                {**asdict(check.convention), "findings": check.findings, "otherwise": check.otherwise}
-                for check in self.conventions
-            ],
-            "components": [component.to_dict() for component in self.components],
-        }
+        return finite(
+            {
+                "schema": SCHEMA,
+                "passed": self.passed,
+                "title": publication.title,
+                "source": publication.source,
+                "language": publication.language,
+                "equations": [equation.number for equation in publication.equations],
+                "seed": self.seed,
+                "notes": list(self.notes),
+                "totals": {
+                    "components": totals.components,
+                    **{str(verdict): number for verdict, number in totals.verdicts.items()},
+                    "findings": totals.findings,
+                    "kinds": {str(kind): number for kind, number in totals.kinds.items()},
+                    "dimensionally_wrong": totals.dimensionally_wrong,
+                },
+                "conventions": [
+                    {**asdict(check.convention), "findings": check.findings, "otherwise": check.otherwise}
+                    for check in self.conventions
+                ],
+                "components": [component.to_dict() for component in self.components],
+            }
+        )
 
 
 def counted(number: int, what: str) -> str:

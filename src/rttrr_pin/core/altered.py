@@ -15,7 +15,7 @@ from rttrr_pin.core.joint import Joint, JointEffects, Lock
 from rttrr_pin.core.joints import FIXED
 from rttrr_pin.core.model import UNIVERSE, Link, Model, unused
 from rttrr_pin.core.scalars import EPS, FLOAT
-from rttrr_pin.errors import ShapeError, UnknownNameError
+from rttrr_pin.errors import InputError, ShapeError, UnknownNameError
 
 QUATERNION = 8 * EPS
 """How far the squared length of a locked quaternion may be from 1: other programs read it as angles, of length 1."""
@@ -49,6 +49,8 @@ def with_locked(model: Model, q: Mapping[str, ArrayLike]) -> Model:
         NumberError, ShapeError: as for coordinates; here there are no batches, and a quaternion that other programs
             read as angles must have the length 1 to rounding.
     """
+    if not isinstance(q, Mapping):
+        raise InputError(f"joints is a {type(q).__name__}: pass a dict from joint name to coordinate")
     for name in q:
         if name not in model.joint_names:
             raise UnknownNameError("moving joint", name, model.joint_names, _leader(model, name))

@@ -1,8 +1,9 @@
-"""The array type of the package, the norm of its vectors, and rotations by URDF's roll, pitch and yaw."""
+"""The array type of the package, the norm of its vectors, rotations by roll, pitch and yaw, and data that holds arrays."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import fields
 from math import atan2, cos, hypot, sin
 from typing import TypeAlias
 
@@ -52,3 +53,12 @@ def angles_of(R: Array) -> tuple[float, float, float]:
     c, s = cos(roll), sin(roll)
     yaw = atan2(s * R[0, 2] - c * R[0, 1], c * R[1, 1] - s * R[1, 2])
     return roll, pitch, yaw
+
+
+class Rebuilt:
+    """Frozen data that is copied and unpickled by its own arguments, since NumPy forgets that an array is read-only."""
+
+    __slots__ = ()
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return type(self), tuple(getattr(self, own.name) for own in fields(self))  # type: ignore[arg-type]

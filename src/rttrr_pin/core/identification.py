@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.inputs import finite, real
 from rttrr_pin.core.model import Model
-from rttrr_pin.errors import InputError, ShapeError
+from rttrr_pin.errors import ShapeError
 
 INERTIAL = ("m", "m c_x", "m c_y", "m c_z", "I_xx", "I_xy", "I_yy", "I_xz", "I_yz", "I_zz")
 """The ten parameters of a link, the tensor about the origin of {i}, in the order of the regressor."""
@@ -46,7 +46,7 @@ Y_OVER = 3
 """Rows for each column: random states tell the rank of a robot with probability 1, and well if there are some more."""
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
 class BaseParameters:
     """A basis of the parameters that motion can tell, made by `Robot.base_parameters`.
 
@@ -65,6 +65,9 @@ class BaseParameters:
     map: Array
     tolerance: float
     distances: Array
+
+    def __repr__(self) -> str:
+        return f"<BaseParameters: {self.rank} of {len(self.names)}>"
 
     @property
     def rank(self) -> int:
@@ -242,8 +245,6 @@ def base_parameters(names: Sequence[str], Y: Array, tolerance: float) -> BasePar
         Y: the regressor at random states, (N, nv, columns), its rows in one unit.
         tolerance: see `BaseParameters`.
     """
-    if not 0.0 < tolerance < 1.0:
-        raise InputError(f"tolerance is {tolerance}: expected a number between 0 and 1, such as 1e-9")
     W = Y.reshape(math.prod(Y.shape[:-1]), len(names))
     norms = np.linalg.norm(W, axis=0)
     scale = _of_kind(names, norms)

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
+from numbers import Real
 
 import numpy as np
 
-from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.arrays import Array, Rebuilt
+from rttrr_pin.core.inputs import real, whole_number
 from rttrr_pin.core.joints.base import JointType
-from rttrr_pin.errors import InputError
+from rttrr_pin.errors import InputError, shortened
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,7 +79,7 @@ class Lock:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Joint:
+class Joint(Rebuilt):
     """A joint, and where it sits on the link that carries it.
 
     Attributes:
@@ -110,6 +112,18 @@ class Joint:
     lock: Lock | None = None
 
     def __post_init__(self) -> None:
+        named("joint", self.name)
+        whole_number(f"parent of joint {self.name!r}", self.parent, -1, LAST_LINK)
+        of_joint = f"of joint {self.name!r}"
+        check_numbers(f"limits {of_joint}", self.limits, Limits)
+        check_numbers(f"dynamics {of_joint}", self.dynamics, JointEffects)
+        check_numbers(f"effects {of_joint}", self.effects, JointEffects)
+        if self.mimic is not None:
+            check_numbers(f"mimic {of_joint}", self.mimic, Mimic)
+        if not isinstance(self.type, JointType):
+            raise InputError(
+                f"type of joint {self.name!r} is {self.type!r}: pass one of rttrr_pin.core.joints, such as REVOLUTE"
+            )
         for name, shape in (("R", (3, 3)), ("p", (3,)), ("axis", (3,))):
             object.__setattr__(self, name, frozen(getattr(self, name), shape, f"{name} of joint {self.name!r}"))
         if self.type.has_axis and abs(np.linalg.norm(self.axis) - 1.0) > 1e-9:
@@ -150,9 +164,41 @@ class Joint:
         return [f"{self.name}.{own.name}" if own.name else self.name for own in self.type.rates]
 
 
+LAST_LINK = 10**6
+"""More links than a robot has."""
+
+
+def named(kind: str, name: object) -> None:
+    """Links and joints have names that are text.
+
+    Raises:
+        InputError: it is of another type.
+    """
+    if not isinstance(name, str):
+        raise InputError(f"the name of a {kind} is {name!r}: pass text")
+
+
+def check_numbers(label: str, own: object, kind: type[Limits | JointEffects | Mimic]) -> None:
+    """Data of a joint holds numbers, floats or fractions, and only its limits may be infinite.
+
+    Raises:
+        InputError: it holds something else, or is of another type.
+    """
+    if not isinstance(own, kind):
+        raise InputError(f"{label} is a {type(own).__name__}: pass {kind.__name__}(...)")
+    for part in fields(own):
+        value = getattr(own, part.name)
+        try:
+            x = float(value) if isinstance(value, Real) else math.nan
+        except OverflowError:
+            x = math.nan
+        if math.isnan(x) or (math.isinf(x) and kind is not Limits):
+            raise InputError(f"{part.name} in {label} is {shortened(repr(value))}: expected a number")
+
+
 def frozen(values: Array, shape: tuple[int, ...], name: str) -> Array:
     """A read-only float64 copy of the wanted shape."""
-    array = np.array(values, dtype=np.float64)
+    array = np.array(real(name, values))
     if array.shape != shape or not np.isfinite(array).all():
         raise InputError(f"{name} is {np.asarray(values).tolist()}: expected {shape} finite numbers")
     array += 0.0  # -0.0, a by-product of some rotations, becomes 0.0

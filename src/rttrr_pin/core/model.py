@@ -15,17 +15,18 @@ from typing import Protocol
 
 import numpy as np
 
-from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.joint import Joint, JointEffects, frozen
+from rttrr_pin.core.arrays import Array, Rebuilt
+from rttrr_pin.core.inputs import real
+from rttrr_pin.core.joint import Joint, JointEffects, frozen, named
 from rttrr_pin.core.joints import FLOATING
-from rttrr_pin.errors import InputError, UnknownNameError
+from rttrr_pin.errors import InputError, UnknownNameError, shortened
 
 STANDARD_GRAVITY = (0.0, 0.0, -9.81)
 """The gravity field [m/s^2] in the base frame that is used unless another is passed (Pinocchio's default)."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Link:
+class Link(Rebuilt):
     """A rigid body.
 
     Attributes:
@@ -45,10 +46,13 @@ class Link:
     rotated: bool = False
 
     def __post_init__(self) -> None:
+        named("link", self.name)
         object.__setattr__(self, "com", frozen(self.com, (3,), f"com of link {self.name!r}"))
         object.__setattr__(self, "inertia", frozen(self.inertia, (3, 3), f"inertia of link {self.name!r}"))
-        if not math.isfinite(self.mass):
+        mass = real(f"mass of link {self.name!r}", self.mass)
+        if mass.ndim or not math.isfinite(mass):
             raise InputError(f"mass of link {self.name!r} is {self.mass}: expected a finite number")
+        object.__setattr__(self, "mass", float(mass))
         if not np.array_equal(self.inertia, self.inertia.T):
             raise InputError(f"inertia of link {self.name!r} is not symmetric: {self.inertia.tolist()}")
 
@@ -86,8 +90,8 @@ def unused(name: str, taken: Collection[str]) -> str:
     return next(one for one in numbered if one not in taken)
 
 
-@dataclass(frozen=True, eq=False)
-class Model:
+@dataclass(frozen=True, eq=False, repr=False)
+class Model(Rebuilt):
     """A tree of links and joints; joint i carries link i.
 
     Attributes:
@@ -112,6 +116,11 @@ class Model:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "gravity", frozen(self.gravity, (3,), "gravity"))
+        for part, kind in (("links", Link), ("joints", Joint)):
+            own = getattr(self, part)
+            if not isinstance(own, tuple | list) or not all(isinstance(one, kind) for one in own):
+                raise InputError(f"{part} is {shortened(repr(own))}: pass a tuple of {kind.__name__} objects")
+            object.__setattr__(self, part, tuple(own))
         if len(self.links) != len(self.joints):
             raise InputError(
                 f"{len(self.joints)} joints for {len(self.links)} links: expected one joint for each link "
@@ -134,6 +143,9 @@ class Model:
                     f"joint {joint.name!r} follows joint number {joint.mimic.joint}, which does not move by itself: "
                     "name the joint at the end of the chain"
                 )
+
+    def __repr__(self) -> str:
+        return f"<Model {self.name!r}: {len(self.links)} links, nq {self.nq}, nv {self.nv}>"
 
     @property
     def urdf(self) -> str:
@@ -200,11 +212,11 @@ class Model:
         Raises:
             UnknownNameError: no link is called so, or it is the root, which no joint carries.
         """
-        try:
+        if isinstance(name, str) and name in self.link_names:
             return self.link_names.index(name)
-        except ValueError:
-            fix = f"{name!r} is the root, which no joint carries" if name == self.root.name else ""
-            raise UnknownNameError("link", name, self.link_names, fix) from None
+        of_root = isinstance(name, str) and name == self.root.name
+        fix = f"{name!r} is the root, which no joint carries" if of_root else ""
+        raise UnknownNameError("link", name, self.link_names, fix)
 
     def leaves(self) -> tuple[int, ...]:
         """The links that carry no other."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
@@ -11,6 +10,7 @@ import numpy as np
 
 from rttrr_pin.core.algebra import Vector
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.inputs import not_negative
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.newton_euler import Payload
 from rttrr_pin.core.scalars import Arithmetic, columns
@@ -106,9 +106,7 @@ class RandomPayload:
 
     def __post_init__(self) -> None:
         for name in ("force", "moment"):
-            half_range = getattr(self, name)
-            if not 0.0 <= half_range < math.inf:
-                raise InputError(f"{name} of RandomPayload is {half_range}: expected a finite number, not negative")
+            object.__setattr__(self, name, not_negative(f"{name} of RandomPayload", getattr(self, name), name))
 
 
 def payloads_of(loads: Sequence[Load], arithmetic: Arithmetic) -> list[Payload]:

@@ -11,7 +11,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.errors import InputError
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -54,8 +53,6 @@ def estimate(J: Array, tau: Array, tolerance: float) -> WrenchEstimate:
         tau: (..., nv).
         tolerance: singular values at most this part of the largest count as zero.
     """
-    if not 0.0 < tolerance < 1.0:
-        raise InputError(f"tolerance is {tolerance}: expected a number between 0 and 1, such as 1e-9")
     A = np.swapaxes(J, -1, -2)
     U, s, V = np.linalg.svd(A, full_matrices=False)
     felt = s > tolerance * s.max(axis=-1, keepdims=True, initial=0.0)

@@ -9,9 +9,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.inputs import vectors
-from rttrr_pin.errors import InputError, ShapeError, UnknownNameError
+from rttrr_pin.core.arrays import Array, Rebuilt
+from rttrr_pin.core.inputs import choice, vectors
+from rttrr_pin.errors import ShapeError, UnknownNameError
 
 LINK_QUANTITIES = ("F", "N", "f", "n")
 """One vector for each link."""
@@ -24,7 +24,7 @@ RESULTS = (*QUANTITIES, "tau_joint")
 
 
 @dataclass(frozen=True, eq=False)
-class Wrench:
+class Wrench(Rebuilt):
     """What the robot exerts on its surroundings at a link: the paper's payload 6f6, 6n6, equation (8).
 
     A gripper that carries a weight W presses it *up* with W, so the payload's force points up; it is minus what the
@@ -49,10 +49,7 @@ class Wrench:
     expressed_in: Literal["link", "base"] = "link"
 
     def __post_init__(self) -> None:
-        if self.expressed_in not in ("link", "base"):
-            raise InputError(
-                f"payload expressed_in is {self.expressed_in!r}: expected 'link' (the frame it acts at) or 'base'"
-            )
+        choice("payload expressed_in", self.expressed_in, "link", "base")
         for name in ("force", "moment"):
             own = np.array(vectors(f"payload {name}", getattr(self, name)))
             own.setflags(write=False)
@@ -93,16 +90,23 @@ class LinkWrenches:
         return cls(**{key: parts[key] for key in RESULTS}, links=links, joints=joints)
 
     def at(self, name: str) -> dict[str, Array]:
-        """What acts at one link, by quantity; for the name of a moving joint, `{"tau": ...}`.
+        """What acts at one link, by quantity; for the name of a moving joint that no link has too, `{"tau": ...}`.
+
+        Of a joint with several rates, tau has an axis of them; each also has a name, such as `"root_joint.rz"`.
 
         Raises:
             UnknownNameError: neither a link nor a moving joint is called so.
         """
+        if not isinstance(name, str):
+            raise UnknownNameError("link or moving joint", name, (*self.links, *self.joints))
         if name in self.links:
             i = self.links.index(name)
             return {key: getattr(self, key)[..., i, :] for key in LINK_QUANTITIES}
         if name in self.joints:
             return {"tau": self.tau[..., self.joints.index(name)]}
+        own = [k for k, label in enumerate(self.joints) if label.rpartition(".")[0] == name]
+        if own:
+            return {"tau": self.tau[..., own]}
         raise UnknownNameError("link or moving joint", name, (*self.links, *self.joints))
 
     def items(self) -> Iterator[tuple[str, Array]]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import chain, product
 from typing import TYPE_CHECKING, Any
 
+from rttrr_pin.core.inputs import names_of, whole_number
 from rttrr_pin.core.model import Model
 from rttrr_pin.derivation.closed_forms import TooLongError, closed_forms
 from rttrr_pin.derivation.quantities import DEFAULT, QUANTITIES, Extent, Index
@@ -15,6 +16,8 @@ from rttrr_pin.derivation.stepwise import Step, Stepwise, needed
 from rttrr_pin.derivation.symbolic_robot import ParameterSymbols, SymbolicRobot, default_symbols
 from rttrr_pin.derivation.symbols import Expression, Symbol
 from rttrr_pin.errors import InputError, UnknownNameError
+from rttrr_pin.reporting.results import Summarised
+from rttrr_pin.robot import model_of
 
 if TYPE_CHECKING:
     from rttrr_pin.robot import Robot
@@ -40,8 +43,8 @@ class Derived:
     terms: Mapping[Index, Expression]
 
 
-@dataclass(frozen=True)
-class Derivation:
+@dataclass(frozen=True, eq=False, repr=False)
+class Derivation(Summarised):
     """Quantities of a robot as polynomials.
 
     Attributes:
@@ -110,10 +113,10 @@ def _data(expression: Expression) -> list[dict[str, Any]]:
 
 def derive(
     robot: Robot | Model,
-    quantities: Sequence[str] = DEFAULT,
+    quantities: str | Iterable[str] = DEFAULT,
     form: str = "auto",
     parameters: ParameterSymbols | None = None,
-    payload_link: int | None = None,
+    payload_link: str | int | None = None,
     right_angles: bool = False,
 ) -> Derivation:
     """Derive quantities of a robot in symbols, by the recursion of `newton_euler` over polynomials.
@@ -126,30 +129,26 @@ def derive(
             `MOST_TERMS` terms.
         parameters: what stands for the robot's numbers; None names each that is not zero, `ParameterSymbols()` keeps
             the numbers.
-        payload_link: index of the link that the payload acts at; None: there is none, or, where parameters are None,
-            the only link that carries no other.
+        payload_link: the link that the payload acts at, by name or index; None: there is none, or, where parameters
+            are None, the only link that carries no other.
         right_angles: whether rotations within 1e-4 of right angles are read as such.
 
     Returns:
         Polynomials in the parameter symbols, coordinates, rates, accelerations, sines and cosines, in SI units.
 
     Raises:
-        UnknownNameError: there is no such quantity or form.
+        UnknownNameError: there is no such quantity, form or link.
         InputError: no quantity is asked for.
     """
-    model = robot if isinstance(robot, Model) else robot.model
-    for name in quantities:
-        if name not in QUANTITIES:
-            raise UnknownNameError("quantity", name, QUANTITIES)
-    if form not in FORMS:
+    model = robot if isinstance(robot, Model) else model_of(robot)
+    wanted = _quantities(quantities)
+    if not isinstance(form, str) or form not in FORMS:
         raise UnknownNameError("form", form, FORMS)
-    if not quantities:
-        raise InputError(f"no quantity is asked for: name some of {', '.join(QUANTITIES)}")
-    wanted = list(dict.fromkeys(quantities))
-    if parameters is None:
-        payload_link = only_leaf(model) if payload_link is None else payload_link
-        parameters = default_symbols(model, payload_link)
-    symbolic = SymbolicRobot(model, parameters, payload_link, right_angles)
+    link = only_leaf(model) if payload_link is None and parameters is None else _link_of(model, payload_link)
+    parameters = default_symbols(model, link) if parameters is None else parameters
+    if not isinstance(parameters, ParameterSymbols):
+        raise InputError(f"parameters is a {type(parameters).__name__}: pass ParameterSymbols(...) or None")
+    symbolic = SymbolicRobot(model, parameters, link, right_angles)
     if form == "stepwise":
         return _stepwise(symbolic, wanted, "as asked for")
     if form == "expanded":
@@ -158,6 +157,24 @@ def derive(
         return _expanded(symbolic, wanted, MOST_TERMS)
     except TooLongError:
         return _stepwise(symbolic, wanted, f"written out it would have more than {MOST_TERMS:,} terms")
+
+
+def _quantities(quantities: str | Iterable[str]) -> tuple[str, ...]:
+    """The quantities that are asked for, each once."""
+    wanted = tuple(dict.fromkeys(names_of("quantities", quantities)))
+    for name in wanted:
+        if name not in QUANTITIES:
+            raise UnknownNameError("quantity", name, QUANTITIES)
+    if not wanted:
+        raise InputError(f"no quantity is asked for: name some of {', '.join(QUANTITIES)}")
+    return wanted
+
+
+def _link_of(model: Model, link: str | int | None) -> int | None:
+    """The index of a link, by its name or by itself."""
+    if link is None or isinstance(link, str):
+        return None if link is None else model.link_index(link)
+    return whole_number("payload_link", link, 0, len(model.links) - 1)
 
 
 def only_leaf(model: Model) -> int | None:

@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import NamedTuple
 
 from rttrr_pin.core.algebra import Matrix, Scalar, Vector
+from rttrr_pin.core.arrays import Rebuilt
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Link, Model
@@ -71,7 +72,7 @@ class ParameterSymbols:
 
 
 @dataclass(frozen=True)
-class SymbolicRobot:
+class SymbolicRobot(Rebuilt):
     """A robot whose numbers are polynomials in symbols.
 
     Attributes:

@@ -15,10 +15,10 @@ from numpy.typing import NDArray
 from rttrr_pin.core.arrays import Array, norm
 from rttrr_pin.core.batch import batch_shape, check_overflow, flat, split_columns
 from rttrr_pin.core.dynamics import body_of
+from rttrr_pin.core.inputs import choice
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import QUANTITIES, LinkWrenches
-from rttrr_pin.errors import InputError
 from rttrr_pin.exact.intervals import INTERVAL, LoadFrames, Run, flat_dynamics, interval, precision
 from rttrr_pin.exact.parameters import Parameters, exact_parameters
 from rttrr_pin.exact.rounding import bounded_dynamics
@@ -138,8 +138,7 @@ def enclose(
         NumberError: a result is beyond float64.
         ShapeError: leading axes do not broadcast.
     """
-    if parameters not in get_args(Parameters):
-        raise InputError(f"parameters is {parameters!r}: expected one of {', '.join(map(repr, get_args(Parameters)))}")
+    choice("parameters", parameters, *get_args(Parameters))
     batch = batch_shape((q, v, a), loads)
     rows = math.prod(batch)
     q, v, a = (np.broadcast_to(x, (*batch, x.shape[-1])).reshape(rows, x.shape[-1]) for x in (q, v, a))

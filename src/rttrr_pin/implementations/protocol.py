@@ -28,7 +28,7 @@ def kernel_of(model: Model, outputs: tuple[str, ...]) -> Kernel[dict[str, Array]
     return Kernel(model, outputs)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Batch:
     """States of one robot.
 
@@ -84,7 +84,7 @@ class Batch:
         return None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Evaluation:
     """What an implementation says of a batch.
 

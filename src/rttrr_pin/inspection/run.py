@@ -7,13 +7,13 @@ import re
 from collections.abc import Iterable
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 from xml.parsers import expat
 
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.inputs import names_of, path_of
 from rttrr_pin.errors import InputError, UnknownNameError
 from rttrr_pin.inspection import physics, plausibility, report, structure
 from rttrr_pin.inspection.bodies import LinkRow, centre_of_mass, tree
@@ -24,6 +24,7 @@ from rttrr_pin.inspection.file_faults import FILE_CHECKS
 from rttrr_pin.inspection.merged import merged_links
 from rttrr_pin.inspection.parsers import Verdict, verdicts
 from rttrr_pin.inspection.telling import OF_PLACEHOLDER, OF_TENSOR, checks_of, told
+from rttrr_pin.reporting.results import finite
 from rttrr_pin.urdf.document import UrdfDocument
 from rttrr_pin.urdf.parser import read_document
 
@@ -34,7 +35,7 @@ CHECKS = (*checks_of(physics, plausibility, structure), *FILE_CHECKS)
 """All checks, in the order of their modules and of the lines there, which is that of their ids."""
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Inspection:
     """What there is to say of a robot's file.
 
@@ -92,14 +93,18 @@ class Inspection:
 
     def to_dict(self) -> dict[str, Any]:
         """The inspection as data for JSON; units as in the attributes."""
-        return report.to_dict(self)
+        return finite(report.to_dict(self))
+
+    def __repr__(self) -> str:
+        found = ", ".join(f"{count} {severity}" for severity, count in self.counts.items())
+        return f"<Inspection of {self.robot!r}: {found}>"
 
 
 def inspect(
     robot: Robot | str | os.PathLike[str],
     folder: str | os.PathLike[str] | None = None,
-    select: Iterable[str] = (),
-    ignore: Iterable[str] = (),
+    select: str | Iterable[str] = (),
+    ignore: str | Iterable[str] = (),
 ) -> Inspection:
     """Inspect the file behind a robot: its tree and bodies, what is wrong with it, and what other programs do with it.
 
@@ -121,7 +126,9 @@ def inspect(
     """
     if isinstance(robot, str | os.PathLike):
         return inspect_document(read_document(robot, tolerant=True), folder, select, ignore)
-    document = robot.model.document
+    from rttrr_pin.robot import model_of  # of a file alone, no robot is made
+
+    document = model_of(robot).document
     if not isinstance(document, UrdfDocument):
         raise InputError(f"robot {robot.name!r} has no URDF text: inspect looks at files; load the robot from one")
     return inspect_document(document, folder, select, ignore)
@@ -130,12 +137,12 @@ def inspect(
 def inspect_document(
     document: UrdfDocument,
     folder: str | os.PathLike[str] | None = None,
-    select: Iterable[str] = (),
-    ignore: Iterable[str] = (),
+    select: str | Iterable[str] = (),
+    ignore: str | Iterable[str] = (),
 ) -> Inspection:
     """The same of a file that was read, without the robot that it describes."""
-    checks = chosen(tuple(select), tuple(ignore))
-    subject = Subject(document, document.folder if folder is None else Path(folder))
+    checks = chosen(names_of("select", select), names_of("ignore", ignore))
+    subject = Subject(document, document.folder if folder is None else path_of("folder", folder))
     with np.errstate(all="ignore"):  # 1e308 is a number; what overflows is shown as inf, and no verdict rests on it
         findings = told(_explained(subject, finding) for check in checks for finding in check.findings(subject))
         links = tuple(tree(document))

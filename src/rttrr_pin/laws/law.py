@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from pkgutil import resolve_name
 from typing import TypeAlias
 
 from rttrr_pin.core.algebra import Scalar
@@ -35,6 +36,10 @@ class Law:
     statement: str
     residual: Residual
     reads: tuple[str, ...] = ()
+
+    def __reduce__(self) -> tuple[object, ...]:
+        """By its name, which in its module is that of the law and no longer of the function."""
+        return resolve_name, (f"{self.residual.__module__}:{self.residual.__name__}",)
 
 
 def law(id: str, name: str, reads: tuple[str, ...] = ()) -> Callable[[Residual], Law]:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.inputs import names_of
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load, RandomPayload
 from rttrr_pin.errors import InputError, UnknownNameError
@@ -19,6 +20,7 @@ from rttrr_pin.implementations.registry import Source
 from rttrr_pin.laws import balance, matrix, symmetry
 from rttrr_pin.laws.case import Case
 from rttrr_pin.laws.law import Law
+from rttrr_pin.reporting.results import Summarised, finite
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.compare import Worst, ratio
 from rttrr_pin.validation.sampling import Payload, Sampler
@@ -64,8 +66,8 @@ class LawRow:
         }
 
 
-@dataclass(frozen=True, slots=True)
-class LawReport:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class LawReport(Summarised):
     """The outcome of a run.
 
     Attributes:
@@ -119,7 +121,8 @@ class LawReport:
         """Everything as data for JSON."""
         names = ("passed", "robot", "base", "subject", "n_states", "sampling", "seed", "payload", "seconds", "notes")
         laws = {row.law.id: row.to_dict() for row in self.rows}
-        return {"schema": 1, **{name: getattr(self, name) for name in names}, "laws": laws}
+        data = {"schema": 1, **{name: getattr(self, name) for name in names}, "laws": laws}
+        return finite(data)
 
 
 def check_laws(
@@ -129,7 +132,7 @@ def check_laws(
     seed: int = 0,
     sampling: str = "uniform",
     payload: Payload = RandomPayload(),  # noqa: B008 - frozen
-    select: Iterable[str] = (),
+    select: str | Iterable[str] = (),
     progress: Progress | None = None,
 ) -> LawReport:
     """Check the laws of mechanics on random states.
@@ -158,11 +161,11 @@ def check_laws(
         UnknownNameError: there is no such sampling or law.
     """
     laws = _chosen(select)
-    check_count(n_states)
+    n_states = check_count(n_states)
     model = model_of(robot, "no law says anything of it")
     start = time.perf_counter()
     program = make_implementation(subject, model)
-    whole = subject == RECURSION
+    whole = isinstance(subject, str) and subject == RECURSION
     rows = tuple(LawRow(law) for law in (laws if whole else _checkable(laws, program)))
     acting = payload
     if isinstance(payload, RandomPayload) and payload.link is None:
@@ -179,7 +182,7 @@ def check_laws(
         subject=label(program),
         n_states=states.count(n_states),
         sampling=states.sampling,
-        seed=seed,
+        seed=states.sampler.seed,
         payload=described(payload),
         rows=rows,
         seconds=time.perf_counter() - start,
@@ -222,9 +225,9 @@ def _in_base_axes(model: Model, load: Load) -> Load:
     return Load(len(model.links) // 2, load.f[:, ::-1], load.n[:, ::-1], in_base=True)
 
 
-def _chosen(select: Iterable[str]) -> list[Law]:
+def _chosen(select: str | Iterable[str]) -> list[Law]:
     """The laws whose ids begin with one of the prefixes; all laws without a prefix."""
-    prefixes = tuple(select)
+    prefixes = names_of("select", select)
     for prefix in prefixes:
         if not prefix or not any(law.id.startswith(prefix) for law in LAWS):
             raise UnknownNameError("law", prefix, [law.id for law in LAWS])

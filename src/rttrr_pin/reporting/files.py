@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 import tempfile
 from pathlib import Path
@@ -11,6 +10,7 @@ from typing import Any
 
 from rttrr_pin.errors import InputError
 from rttrr_pin.reporting.interrupts import held_back, put_in_place
+from rttrr_pin.reporting.results import finite
 
 PARTIAL = ".rttrr-pin."
 """What the name of a file that is not whole yet begins with; short, since the target's may be as long as one may be."""
@@ -18,7 +18,7 @@ PARTIAL = ".rttrr-pin."
 
 def as_json(data: dict[str, Any]) -> str:
     """JSON text; what JSON has no number for is written as text ("inf")."""
-    return json.dumps(_finite(data), indent=2, allow_nan=False) + "\n"
+    return json.dumps(finite(data), indent=2, allow_nan=False) + "\n"
 
 
 def write_whole(path: Path, text: str) -> None:
@@ -55,14 +55,3 @@ def _replace(target: Path, text: str) -> None:
     except BaseException:
         Path(name).unlink(missing_ok=True)
         raise
-
-
-def _finite(data: Any) -> Any:
-    """The same data with text in place of NaN and infinities."""
-    if isinstance(data, dict):
-        return {key: _finite(value) for key, value in data.items()}
-    if isinstance(data, (list, tuple)):
-        return [_finite(value) for value in data]
-    if isinstance(data, float) and not math.isfinite(data):
-        return str(data)
-    return data

@@ -24,6 +24,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, TypeAlias
 
+from rttrr_pin.core.inputs import path_of
 from rttrr_pin.core.model import Model, Note
 from rttrr_pin.errors import InputError, UnknownNameError, UrdfError, shortened
 from rttrr_pin.urdf import xacro
@@ -148,9 +149,13 @@ def robots_in(folder: str | os.PathLike[str]) -> dict[str, Path]:
     Raises:
         UrdfError: it is no folder, cannot be read, holds no such file, or far more than anyone keeps robots among.
     """
-    top = Path(folder)
+    top = path_of("folder", folder)
     shown = shortened(str(folder))
-    if not top.is_dir():
+    try:
+        there = top.is_dir()
+    except (OSError, ValueError) as error:  # a name too long, or with a zero byte
+        raise UrdfError(f"cannot be read: {getattr(error, 'strerror', None) or error}", source=shown) from None
+    if not there:
         raise UrdfError("is no folder, expected one that holds URDF files", source=shown)
     shut: dict[Path, str] = {}
     robots: list[Path] = []

@@ -136,12 +136,12 @@ class RunOptions:
         return {"subject": self.subject, "reference": reference, "seed": self.seed, "payload": self._payload()}
 
     def _payload(self) -> Wrench | RandomPayload | None:
-        if self.payload is None or self.payload == "random":
-            if self.payload_link is not None or self.payload_axes != "link":
-                raise InputError(
-                    "--payload-link and --payload-axes go with six numbers: pass --payload fx,fy,fz,nx,ny,nz"
-                )
-            return None if self.payload is None else RandomPayload()
+        if self.payload is None and self.payload_link is not None:
+            raise InputError("--payload-link goes with a payload: pass --payload random or --payload fx,fy,fz,nx,ny,nz")
+        if self.payload in (None, "random"):
+            if self.payload_axes != "link":
+                raise InputError("--payload-axes goes with six numbers: pass --payload fx,fy,fz,nx,ny,nz")
+            return None if self.payload is None else RandomPayload(self.payload_link)
         if self.payload_axes not in ("link", "base"):
             raise InputError(f"--payload-axes is {self.payload_axes!r}: expected link or base")
         numbers = numbers_of("--payload", self.payload, 6)

@@ -14,6 +14,7 @@ from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.exact import Adjudication
 from rttrr_pin.implementations import Implementation, label
 from rttrr_pin.implementations.registry import Source
+from rttrr_pin.reporting.results import Summarised, finite
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.compare import Comparison, Row, Worst, farthest_of
 from rttrr_pin.validation.comparison import References, Run
@@ -24,8 +25,8 @@ from rttrr_pin.version import __version__
 TOLERANCE = "|subject - reference| <= allowance of the subject + allowance of the reference (docs/tolerance.md)"
 
 
-@dataclass(frozen=True, slots=True)
-class Validation:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Validation(Summarised):
     """The outcome of a run.
 
     Attributes:
@@ -103,7 +104,7 @@ class Validation:
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as data for JSON."""
-        return {
+        data = {
             "schema": 1,
             "passed": self.passed,
             "robot": self.robot,
@@ -123,6 +124,7 @@ class Validation:
             "versions": self.versions,
             "seconds": self.seconds,
         }
+        return finite(data)
 
 
 def adjudication_dict(adjudication: Adjudication) -> dict[str, Any]:
@@ -170,7 +172,7 @@ def validate(
         InputError: an argument cannot be used.
         ImplementationError: a program is missing, refuses the robot, dies, or built another model than the file says.
     """
-    check_count(n_states)
+    n_states = check_count(n_states)
     start = time.perf_counter()
     run = Run.of(robot, subject, reference, seed, sampling, payload)
     for batch in run.states.blocks(n_states, progress):
@@ -187,7 +189,7 @@ def validate(
         references=run.comparisons,
         n_states=run.states.count(n_states),
         sampling=run.states.sampling,
-        seed=seed,
+        seed=run.states.sampler.seed,
         payload=described(payload),
         notes=run.notes,
         seconds=time.perf_counter() - start,

@@ -109,7 +109,7 @@ def _large_velocities(unit: Array, k: Indices, ranges: Ranges) -> Triple:
 
 
 def _mixed(unit: Array, k: Indices, ranges: Ranges) -> Triple:
-    """State k from the family k mod 5."""
+    """State k by the sampling k mod 5."""
     turn = k % 5
     triples = [sampling(unit, k // 5, ranges) for sampling in list(SAMPLINGS.values())[:5]]
     q, v, a = (np.choose(turn[:, None], parts) for parts in zip(*triples, strict=True))
@@ -128,7 +128,7 @@ SAMPLINGS: dict[str, Sampling] = {
 
 
 class Sampler:
-    """Draws states of a robot; state k depends on family, seed and k alone.
+    """Draws states of a robot; state k depends on sampling, seed and k alone.
 
     Attributes:
         model: the robot.

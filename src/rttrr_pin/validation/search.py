@@ -17,10 +17,11 @@ from rttrr_pin.core.inputs import whole_number
 from rttrr_pin.errors import InputError
 from rttrr_pin.implementations import Batch, label
 from rttrr_pin.implementations.registry import Source
+from rttrr_pin.reporting.results import Summarised, finite
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.comparison import References, Run
 from rttrr_pin.validation.sampling import Payload
-from rttrr_pin.validation.states import Progress
+from rttrr_pin.validation.states import Progress, payload_data
 
 POPULATION = 256
 """States in one generation."""
@@ -29,8 +30,8 @@ FEWEST, MOST = 2 * POPULATION, 10**9
 """States that a search can be told to look at: two generations, and more than anyone has time for."""
 
 
-@dataclass(frozen=True, slots=True)
-class WorstCase:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class WorstCase(Summarised):
     """The worst state that a search came to.
 
     Attributes:
@@ -73,10 +74,10 @@ class WorstCase:
     def to_dict(self) -> dict[str, Any]:
         """Everything as data for JSON, with the state."""
         names = ("subject", "reference", "quantity", "at", "of_tolerance", "random", "evaluations", "seed")
-        loads = [{"link": x.link, "f": x.f.reshape(3).tolist(), "n": x.n.reshape(3).tolist()} for x in self.batch.loads]
-        state = {name: getattr(self.batch, name)[0].tolist() for name in "qva"} | {"loads": loads}
+        state = {name: getattr(self.batch, name)[0].tolist() for name in "qva"} | {"payload": payload_data(self.batch)}
         own = {name: getattr(self, name) for name in names}
-        return {"schema": 1, "passed": self.passed, **own, **state, "notes": self.notes}
+        data = {"schema": 1, "passed": self.passed, **own, **state, "notes": self.notes}
+        return finite(data)
 
 
 def search_worst_state(
@@ -86,7 +87,7 @@ def search_worst_state(
     evaluations: int = 20_000,
     seed: int = 0,
     payload: Payload = None,
-    progress: Progress = lambda done: None,
+    progress: Progress | None = None,
 ) -> WorstCase:
     """Look for the state at which a subject and its references differ most, as error / tolerance.
 
@@ -98,12 +99,12 @@ def search_worst_state(
         InputError: an argument cannot be used.
         ImplementationError: as in `validate`.
     """
-    whole_number("evaluations", evaluations, FEWEST, MOST, "10^9", "--evaluations")
+    evaluations = whole_number("evaluations", evaluations, FEWEST, MOST, "10^9", "--evaluations")
     run = Run.of(robot, subject, reference, seed, "uniform", payload)
     if run.states.table is not None:
         raise InputError("a table of results has its own states, and a search makes new ones: name a program")
     sampler = run.states.sampler
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(sampler.seed)
     start = rng.random((POPULATION, sampler.numbers))
     done = 0
 
@@ -118,7 +119,8 @@ def search_worst_state(
         unit = np.atleast_2d(columns.T)
         worst: Array = ratios(sampler.made_of(unit)).max(axis=0)
         done += len(unit)
-        progress(min(done, evaluations))
+        if progress is not None:
+            progress(min(done, evaluations))
         return -worst
 
     random = float(-closeness(start.T).min())
@@ -140,4 +142,6 @@ def search_worst_state(
     pairs = zip(run.references, run.comparisons, strict=True)
     rows = [(label(reference), row.quantity, row.at) for reference, comparison in pairs for row in comparison.rows]
     worst = int(np.argmax(reached))
-    return WorstCase(label(run.subject), *rows[worst], float(reached[worst]), random, done, seed, batch, run.notes)
+    return WorstCase(
+        label(run.subject), *rows[worst], float(reached[worst]), random, done, sampler.seed, batch, run.notes
+    )

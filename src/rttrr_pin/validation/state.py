@@ -9,14 +9,16 @@ from rttrr_pin.core.inputs import whole_number
 from rttrr_pin.exact import Adjudication
 from rttrr_pin.implementations import Batch, Evaluation, label
 from rttrr_pin.implementations.registry import Source
+from rttrr_pin.reporting.results import Summarised, finite
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.compare import Difference, Row
 from rttrr_pin.validation.comparison import References, Run
 from rttrr_pin.validation.run import TOLERANCE, adjudication_dict
 from rttrr_pin.validation.sampling import LAST_STATE, Payload
+from rttrr_pin.validation.states import payload_data
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class StateComparison:
     """What one reference says of the state.
 
@@ -56,8 +58,8 @@ class StateComparison:
         }
 
 
-@dataclass(frozen=True, slots=True)
-class StateReport:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class StateReport(Summarised):
     """One state in full.
 
     Attributes:
@@ -99,7 +101,7 @@ class StateReport:
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as data for JSON."""
-        return {
+        data = {
             "schema": 1,
             "passed": self.passed,
             "robot": self.robot,
@@ -108,15 +110,7 @@ class StateReport:
             "v_names": self.v_names,
             "links": self.links,
             **{name: getattr(self.batch, name)[0].tolist() for name in "qva"},
-            "payload": [
-                {
-                    "link": self.links[load.link],
-                    "force": load.f.ravel().tolist(),
-                    "moment": load.n.ravel().tolist(),
-                    "expressed_in": "base" if load.in_base else "link",
-                }
-                for load in self.batch.loads
-            ],
+            "payload": payload_data(self.batch),
             "subject": self.subject,
             "values": {key: x[0].tolist() for key, x in self.result.values.items()},
             "tolerance": TOLERANCE,
@@ -124,6 +118,7 @@ class StateReport:
             "adjudication": adjudication_dict(self.adjudication),
             "notes": self.notes,
         }
+        return finite(data)
 
 
 def compare_state(
@@ -143,7 +138,7 @@ def compare_state(
         InputError: an argument cannot be used.
         ImplementationError: as in `validate`.
     """
-    whole_number("state", index, 0, LAST_STATE, "10^15", "--index")
+    index = whole_number("state", index, 0, LAST_STATE, "10^15", "--index")
     run = Run.of(robot, subject, reference, seed, sampling, payload)
     if run.states.table is not None:
         whole_number("state", index, 0, len(run.states.table) - 1, option="--index")

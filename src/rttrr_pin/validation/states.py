@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -14,6 +15,7 @@ from rttrr_pin.core.payload import Load, RandomPayload
 from rttrr_pin.errors import InputError
 from rttrr_pin.implementations import Batch, Implementation
 from rttrr_pin.robot import Robot
+from rttrr_pin.robot import model_of as robot_model
 from rttrr_pin.validation.sampling import LAST_STATE, Payload, Sampler
 
 BLOCK = 1024
@@ -88,15 +90,27 @@ def described(payload: Payload) -> str:
     return f"force {f} N, moment {n} N m at {payload.link or 'the tool'}, {axes}"
 
 
-def check_count(n_states: int) -> None:
+def payload_data(batch: Batch) -> list[dict[str, Any]]:
+    """The payload of a batch of one as data for JSON."""
+    return [
+        {
+            "link": batch.model.link_names[load.link],
+            "force": load.f.ravel().tolist(),
+            "moment": load.n.ravel().tolist(),
+            "expressed_in": "base" if load.in_base else "link",
+        }
+        for load in batch.loads
+    ]
+
+
+def check_count(n_states: int) -> int:
     """A run has at least one state: none would prove nothing."""
-    whole_number("n_states", n_states, 1, LAST_STATE, "10^15, since none would prove nothing", "--states")
+    return whole_number("n_states", n_states, 1, LAST_STATE, "10^15, since none would prove nothing", "--states")
 
 
 def model_of(robot: Robot, otherwise: str) -> Model:
     """The model of what is a robot and has a joint; `otherwise` says what follows from having none."""
-    if not isinstance(robot, Robot):
-        raise InputError(f"robot is a {type(robot).__name__}: pass a Robot, such as rttrr_pin.load({robot!r})")
-    if not robot.model.links:
-        raise InputError(f"robot {robot.name!r} has no joint, so that {otherwise}")
-    return robot.model
+    model = robot_model(robot)
+    if not model.links:
+        raise InputError(f"robot {model.name!r} has no joint, so that {otherwise}")
+    return model

@@ -113,7 +113,7 @@ def emitter(name: str | None = None) -> Emitter:
     """
     if name is None:
         return next(own for own in map(_importable, EMITTERS) if own is not None)
-    if name not in EMITTERS:
+    if not isinstance(name, str) or name not in EMITTERS:
         raise UnknownNameError("emitter", name, EMITTERS)
     own = _importable(name)
     if own is None:
