@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -130,7 +130,7 @@ def whole_number(name: str, value: object, least: int, most: int, shown: str = "
     return int(value)
 
 
-def not_negative(label: str, value: ArrayLike, name: str = "", joint: str | None = None) -> float:
+def not_negative(label: str, value: Any, name: str = "", joint: str | None = None) -> float:
     """One number such as a mass.
 
     Raises:
@@ -143,7 +143,7 @@ def not_negative(label: str, value: ArrayLike, name: str = "", joint: str | None
     return float(number)
 
 
-def relative_tolerance(value: ArrayLike) -> float:
+def relative_tolerance(value: Any) -> float:
     """A relative tolerance.
 
     Raises:
