@@ -1,4 +1,4 @@
-"""The array type of the package, the norm of its vectors, rotations by roll, pitch and yaw, and data that holds arrays."""
+"""The array type of the package, the norm of its vectors, roll, pitch and yaw, and data that holds read-only arrays."""
 
 from __future__ import annotations
 
