@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+import os
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote_to_bytes
 from xml.etree import ElementTree
 
 import pytest
@@ -106,6 +108,39 @@ def test_junit_has_a_test_for_each_check_and_parser(folder: Path) -> None:
     failed = {name: [failure_of(test) for test in suite if failure_of(test)] for name, suite in suites.items()}
     assert failed == {"bad.urdf": ["P105", "Drake"], "deep/none.urdf": ["file"], "good.urdf": []}
     assert (suites["bad.urdf"].get("failures"), suites["deep/none.urdf"].get("errors")) == ("2", "1")
+
+
+ODD = (b"\xff", b"\x01\x1b[2J", b"<&>\"'", b"50%#?", b"a b", b"line\nend", "\u202e\ufffe".encode())
+"""What names of files may hold, before `.urdf`."""
+
+
+def test_names_of_files_leave_sarif_and_junit_whole(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    for k, name in enumerate(ODD):
+        (tmp_path / os.fsdecode(name + b".urdf")).write_text((arm(), IMPOSSIBLE, "<robot/>")[k % 3])
+    monkeypatch.chdir(tmp_path)
+    assert main(["inspect", ".", "-q", "--sarif", "s.sarif", "--junit", "j.xml", "--json", "j.json"]) == 1
+    assert len(ElementTree.parse("j.xml").getroot()) == len(ODD)
+    (run,) = json.loads(Path("s.sarif").read_text(encoding="utf-8"))["runs"]
+    named = {unquote_to_bytes(place(result)["artifactLocation"]["uri"]) for result in run["results"]}
+    assert named == {name + b".urdf" for k, name in enumerate(ODD) if k % 3}
+
+
+REQUIRED = {
+    "testsuite": {"name", "tests", "failures", "errors", "time"},
+    "testcase": {"name", "classname", "time"},
+    "failure": {"type", "message"},
+    "error": {"type", "message"},
+}
+ALLOWED = REQUIRED | {"testsuite": REQUIRED["testsuite"] | {"file"}}
+"""Attributes of JUnit's XML by the schemas of Jenkins (xunit plugin) and Ant."""
+
+
+def test_junit_keeps_to_the_schemas(folder: Path) -> None:
+    out = folder.parent / "found.xml"
+    main(["inspect", str(folder), "-q", "--junit", str(out), "--strict", "--fail-on", "Drake"])
+    for element in ElementTree.parse(out).getroot().iter():
+        if element.tag in REQUIRED:
+            assert REQUIRED[element.tag] <= set(element.keys()) <= ALLOWED[element.tag]
 
 
 def failure_of(test: ElementTree.Element) -> str:

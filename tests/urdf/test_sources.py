@@ -6,6 +6,7 @@ import errno
 import math
 import os
 import sys
+import time
 from importlib import metadata
 from pathlib import Path, PurePosixPath
 from typing import Any
@@ -396,3 +397,24 @@ def test_what_yourdfpy_passed_over_in_silence_is_told(tmp_path: Path) -> None:
     with pytest.warns(LoadWarning, match="does not tell where: pass the file instead"):
         robot = rttrr_pin.load(parsed(turned, tmp_path))
     assert any("quat_xyzw" in note for note in rttrr_pin.validate(robot, "recursion", n_states=5).to_dict()["notes"])
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ('name="base"', 'name="' + "b" * 100_000 + '"', "a name has 100,000 characters"),
+        ("<link", "<link" + "".join(f" a{k}=''" for k in range(2000)), "2,001 attributes"),
+        ('value="1"', 'value="1.' + "1" * 100_000 + '"', "has more than 2,000 characters"),
+        ('value="1"', 'value="' + "1" * 300 + "." + "1" * 100_000 + 'e-99"', "has more than 2,000 characters"),
+    ],
+)
+def test_what_takes_long_to_read_is_refused_at_once(old: str, new: str, message: str) -> None:
+    text = (
+        '<robot name="r"><link name="base"><inertial><mass value="1"/>'
+        '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link></robot>'
+    )
+    assert text.count(old) == 1
+    started = time.process_time()
+    with pytest.raises(UrdfError, match=message) as caught:
+        rttrr_pin.load(text.replace(old, new))
+    assert time.process_time() - started < 2.0 and len(str(caught.value)) < 1000

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from math import prod
 from pathlib import Path
 
 from lxml import etree
 
-from rttrr_pin.errors import UrdfError, shortened
-from rttrr_pin.urdf.files import note_read
-from rttrr_pin.urdf.sources import Source, object_source
+from rttrr_pin.errors import InputError, UrdfError, shortened
+from rttrr_pin.urdf.files import note_read, read_limited
+from rttrr_pin.urdf.sources import LARGEST_FILE, Source, object_source
+
+MOST_COPIES = 10_000
+"""Of a body; MuJoCo takes minutes and gigabytes for more."""
+
+GRID, MOST_CELLS = ("nrow", "ncol", "width", "height"), 10**8
+"""The sides of fields of heights and of textures, and the cells that memory has room for."""
 
 
 def mjcf_source(path: Path) -> Source:
@@ -26,24 +33,41 @@ def mjcf_source(path: Path) -> Source:
         ) from None
     from rttrr_pin.implementations.mujoco_model import without_log
 
+    _check(path, path.parent, source)
     try:
         with without_log():
             compiled = mujoco.MjModel.from_xml_path(str(path))
-    except ValueError as error:
+    except (MemoryError, RuntimeError, ValueError) as error:
         raise UrdfError(f"MuJoCo refuses the file: {str(error).strip()}", source=source) from error
-    _note_files(path, path.parent)
     return object_source(compiled, mujoco, "mujoco.MjModel", source)
 
 
-def _note_files(path: Path, folder: Path) -> None:
-    """A file that MuJoCo has read, with those that it includes and names."""
-    note_read(path)
-    root = etree.parse(path, etree.XMLParser(resolve_entities=False, no_network=True)).getroot()
+def _check(path: Path, folder: Path, source: str, copies: int = 1, including: tuple[Path, ...] = ()) -> None:
+    """Of a file that MuJoCo will read and those that it includes and names: they end, and make no crowd of bodies.
+
+    What is no XML, or not there, MuJoCo says itself.
+    """
+    try:
+        root = etree.fromstring(read_limited(path, LARGEST_FILE), etree.XMLParser(resolve_entities=False))
+    except etree.XMLSyntaxError:
+        return
+    except (OSError, InputError) as error:
+        raise UrdfError(f"{path.name} cannot be read: {error}", source=source) from error
     places = {word for tag in root.iter("compiler") for word in tag.attrib.values()}  # meshdir and the like
     for element in root.iter("*"):
-        name = element.get("file", "")
-        if element.tag == "include":
-            _note_files(folder / name, folder)
-        elif name:
-            for place in ("", *places):
-                note_read(folder / place / name)
+        counts = [above.get("count", "") for above in element.iterancestors("replicate")]
+        all_copies = copies * prod(int(count) for count in counts if count.isdecimal())
+        if all_copies > MOST_COPIES:
+            message = f"<replicate> makes {all_copies:,} copies, expected {MOST_COPIES:,} at most"
+            raise UrdfError(message, source=source, line=element.sourceline)
+        cells = prod(int(word) for key in GRID if (word := element.get(key, "")).isdecimal())
+        if cells > MOST_CELLS:
+            message = f"<{element.tag}> has {cells:,} cells, expected {MOST_CELLS:,} at most"
+            raise UrdfError(message, source=source, line=element.sourceline)
+        for place in ("", *places) if (name := element.get("file")) else ():
+            file = folder / place / name
+            note_read(file)
+            if file.exists() and not file.is_file():
+                raise UrdfError(f"names {file}, which is no file", source=source, line=element.sourceline)
+            if element.tag == "include" and file.is_file() and file not in including:
+                _check(file, folder, source, all_copies, (*including, file))

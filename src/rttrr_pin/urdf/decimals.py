@@ -14,12 +14,17 @@ from rttrr_pin.errors import shortened
 NUMBER = re.compile(r"[+-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+-]?[0-9]+)?")
 """A decimal number as XML Schema writes it, in ASCII; no unit, comma, hexadecimal digits, `nan` or `inf`."""
 
+LONGEST = 2000
+"""Characters of a number; exact arithmetic takes time with their square."""
+
 FINEST = -400
 """Power of ten below which a zero is just zero: 0e-999999999 is a valid text, and 10**999999999 fits nowhere."""
 
 
 def beyond_doubles(word: str) -> str:
     """What is wrong with a decimal number that no double stands for; empty where one does."""
+    if len(word) > LONGEST:
+        return f"{shortened(word)} has more than {LONGEST:,} characters, and the longest float64 has 1,077: round it"
     value = float(word)
     if not math.isfinite(value):
         return f"{shortened(word)} is larger than float64 can hold: check the exponent"

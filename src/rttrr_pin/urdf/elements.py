@@ -32,6 +32,9 @@ LET_THROUGH = {
 UNEXPANDED = "this is xacro, which must be expanded: add --xacro (xacro=True), or run xacro on it"
 """What is wrong with a value such as ${mass}."""
 
+MOST_ATTRIBUTES = 1000
+"""Of an element; other parsers take time with the square of them."""
+
 MOST_HINTS = 20
 """Names that are looked for among those that are known."""
 
@@ -203,6 +206,10 @@ def parse_xml(source: Source, log: Log) -> Any:
     info = root.getroottree().docinfo
     if info.doctype or info.internalDTD is not None:
         raise _doctype(source)
+    for element in root.iter():
+        if (many := len(element.attrib)) > MOST_ATTRIBUTES:
+            message = f"an element has {many:,} attributes, expected {MOST_ATTRIBUTES} at most: is it a URDF?"
+            raise UrdfError(message, source=source.name, line=element.sourceline)
     return root
 
 

@@ -30,6 +30,9 @@ from rttrr_pin.urdf.tree import check_mimics, check_tree
 from rttrr_pin.urdf.unused import check_asked, transmissions_of
 from rttrr_pin.urdf.vocabulary import ATTRIBUTES, check_words, not_modelled
 
+LONGEST_NAME = 1000
+"""Characters."""
+
 SUPPORTED = tuple(JOINT_TYPES)
 
 VERSIONS = ((1, 0), (1, 1), (1, 2))
@@ -92,12 +95,21 @@ def read_document(source: AnySource, reading: Reading = AS_IT_STANDS, tolerant: 
 
 def _name(robot: Element) -> str:
     """The robot's name; nothing depends on it."""
-    name = robot.text("name")
+    name = _short(robot)
     if not name:
         kind, has = ("name", "an empty") if "name" in robot.xml.attrib else ("unnamed", "no")
         robot.note(kind, f'<robot> has {has} name, and URDF requires one: write <robot name="...">')
         robot.write(name="robot")
     return name or "robot"
+
+
+def _short(element: Element) -> str:
+    """The name of an element, of a length that can be shown."""
+    name = element.text("name")
+    if len(name) > LONGEST_NAME:
+        message = f"a name has {len(name):,} characters, expected {LONGEST_NAME} at most: give it a shorter one"
+        raise UrdfError(message, source=element.log.source, line=element.line)
+    return name
 
 
 def _version(robot: Element) -> tuple[int, int]:
@@ -120,7 +132,7 @@ def _by_name(robot: Element, tag: str) -> dict[str, Element]:
     named: dict[str, Element] = {}
     counts = Counter(element.text("name") for element in elements)
     for element in elements:
-        element.tag, element.name = tag, element.text("name")
+        element.tag, element.name = tag, _short(element)
         if not element.name:
             element.error("name", f"<{tag}> has no name, which URDF requires", "the element is left out")
         elif element.name not in named:
