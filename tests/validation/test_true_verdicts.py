@@ -170,17 +170,29 @@ def test_a_file_with_errors_is_said_beside_its_verdict(repository: Path, capsys:
     assert capsys.readouterr() == ("", "")
 
 
-def test_hints_name_options_on_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_hints_name_options_on_the_command_line(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     limbs = "".join(
         f'<link name="{side}"/><joint name="to_{side}" type="continuous"><parent link="a"/><child link="{side}"/><axis xyz="0 0 1"/></joint>'
         for side in ("left", "right")
     )
     path = tmp_path / "two.urdf"
     path.write_text(f'<robot name="two"><link name="a"/>{limbs}</robot>')
+    (tmp_path / "hint_of_mine.py").write_text("number = 3")
+    monkeypatch.chdir(tmp_path)
     for words, hint in (
         ([str(path), "--payload", "random"], "pass --payload-link NAME"),
+        ([str(path), "--payload", "1,2,3,4,5,6"], "pass --payload-link NAME"),
+        (["--payload-link", "tool"], "pass --payload random or --payload"),
+        (["--payload", "random", "--payload-axes", "base"], "--payload-axes goes with six numbers"),
+        (["--subject", "hint_of_mine:number"], "hint_of_mine:number is of type int: expected a function"),
         (["--states", "0"], "--states is 0"),
         (["--seed", "-1"], "--seed is -1"),
     ):
         assert main(["validate", *words]) == 2
         assert hint in capsys.readouterr().err
+    words = [str(path), "--payload", "random", "--payload-link", "left", "--subject", "recursion", "--states", "5"]
+    assert main(["validate", *words]) == 0 and "random at left" in capsys.readouterr().out
+    with pytest.raises(InputError, match="pass link=NAME"):
+        validate(rttrr_pin.load(path), "recursion", payload=RandomPayload())

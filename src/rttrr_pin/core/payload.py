@@ -84,9 +84,8 @@ def payload_link(model: Model, name: str | None) -> int:
         return leaves[0]
     names = ", ".join(model.link_names[i] for i in leaves) or "none"
     raise InputError(
-        f"the payload names no link, and robot {model.name!r} has {len(leaves)} last links ({names}): "
-        "pass Wrench(..., link=NAME)",
-        options={"Wrench(..., link=NAME)": "--payload-link NAME"},
+        f"no link is named, and robot {model.name!r} has {len(leaves)} last links ({names}): pass link=NAME",
+        options={"link=NAME": "--payload-link NAME"},
     )
 
 

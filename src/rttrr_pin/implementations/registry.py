@@ -149,9 +149,14 @@ def _of_module(text: str) -> Any:
         sys.path.insert(0, folder)
     try:
         with np.errstate():  # whatever it sets
-            return pkgutil.resolve_name(text)
+            named = pkgutil.resolve_name(text)
     except (Exception, SystemExit) as error:  # the user's own code runs here
         raise ImplementationError(f"{text} cannot be imported: {told(error)}") from error
+    if not (callable(named) or isinstance(named, Implementation)):
+        raise InputError(
+            f"{text} is of type {type(named).__name__}: expected a function f(q, v, a) or an Implementation"
+        )
+    return named
 
 
 def make_references(sources: Source | Sequence[Source], model: Model) -> list[Implementation]:

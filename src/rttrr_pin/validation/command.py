@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shlex
 import time
 from dataclasses import replace
 from pathlib import Path
@@ -49,7 +48,7 @@ def validate(states: int, json: str | None, quiet: bool, full: bool, **run: Any)
         result = comparing.validate(
             loaded, n_states=states, sampling=options.sampling, progress=advance, **options.chosen()
         )
-    result = replace(result, notes=(*result.notes, *_faults(loaded, options.robot)))
+    result = replace(result, notes=(*result.notes, *_faults(loaded, options)))
     write_json(json, result.to_dict)
     console = Output(quiet=quiet or json == "-", soft_wrap=False)
     show_validation(result, console, f"{options.command('state')} --index", full)
@@ -102,13 +101,14 @@ def search(evaluations: int, json: str | None, quiet: bool, **run: Any) -> int:
     return AGREE if worst.passed else DISAGREE
 
 
-def _faults(robot: Robot, source: str) -> list[str]:
+def _faults(robot: Robot, options: RunOptions) -> list[str]:
     """That both programs compute what the file says does not mean that the file says what a body can be."""
     from rttrr_pin.inspection.telling import count_errors
 
     errors = count_errors(robot.model.document)
     count = "1 error" if errors == 1 else f"{errors} errors"
-    return [f"inspect finds {count} in this file: {shlex.join(['rttrr-pin', 'inspect', source])}"] if errors else []
+    look = options.command("inspect", ("xacro", "xacro_arg", "package"))
+    return [f"inspect finds {count} in this file: {look}"] if errors else []
 
 
 def _validate_several(

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from contextlib import suppress
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -91,21 +91,21 @@ class RunOptions:
     no_mimic: bool = False
     package: tuple[str, ...] = ()
 
-    def unusual(self) -> list[str]:
-        """The options that differ from their defaults, as words of a command line."""
+    def unusual(self, names: Collection[str] = ()) -> list[str]:
+        """The options that differ from their defaults, as words of a command line; of some names, where there are."""
         words = []
         for option in fields(self)[1:]:
             value = getattr(self, option.name)
-            if value == option.default:
+            if value == option.default or (names and option.name not in names):
                 continue
             for each in value if isinstance(value, tuple) else (value,):
                 words += [f"--{option.name.replace('_', '-')}", *([] if each is True else [str(each)])]
         return words
 
-    def command(self, name: str) -> str:
-        """The command that takes the same robot, programs and states."""
+    def command(self, name: str, names: Collection[str] = ()) -> str:
+        """The command that takes the same robot, programs and states; or the same options of these names."""
         robot = [] if self.robot == "rttrr" else [self.robot]
-        return shlex.join(["rttrr-pin", name, *robot, *self.unusual()])
+        return shlex.join(["rttrr-pin", name, *robot, *self.unusual(names)])
 
     def check_target(self, json: str | None, files: Iterable[Path] = ()) -> None:
         """The result can be written, and overwrites nothing that is read, nor a program."""

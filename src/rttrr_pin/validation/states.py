@@ -84,7 +84,7 @@ def described(payload: Payload) -> str:
     if payload is None:
         return "none"
     if isinstance(payload, RandomPayload):
-        return "random"
+        return "random" + (f" at {payload.link}" if payload.link else "")
     axes = "base axes" if payload.expressed_in == "base" else "link axes"
     f, n = (np.asarray(x, dtype=float).tolist() for x in (payload.force, payload.moment))
     return f"force {f} N, moment {n} N m at {payload.link or 'the tool'}, {axes}"
