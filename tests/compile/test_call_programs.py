@@ -13,7 +13,7 @@ import rttrr_pin
 from rttrr_pin import LinkWrenches, Robot, Wrench
 from rttrr_pin.compile import Kernel, build, cache
 from rttrr_pin.compile.call_program import CallProgram
-from rttrr_pin.compile.emit import EMITTERS, emitter, llvm
+from rttrr_pin.compile.emit import EMITTERS, emitter, llvm_module
 from rttrr_pin.compile.expression import Graph, Node
 from rttrr_pin.compile.fields import Field
 from rttrr_pin.compile.outlining import Outliner
@@ -178,7 +178,7 @@ def test_the_same_bits_in_any_block_layout_or_thread(size: int, monkeypatch: pyt
     s = states(robot, 0, 9000)
     kernel = forced(robot, FIVE)
     batch = kernel(s.q, s.v, s.a)
-    monkeypatch.setattr(llvm, "SECOND_LEVEL", 8 * size * build.call_program(robot.model, FIVE).columns)
+    monkeypatch.setattr(llvm_module, "SECOND_LEVEL", 8 * size * build.call_program(robot.model, FIVE).columns)
     monkeypatch.setenv(cache.VARIABLE, "")
     blocked = forced(robot, FIVE)(s.q, s.v, s.a, threads=2)
     columns = kernel(*(np.asfortranarray(x) for x in (s.q, s.v, s.a)))
