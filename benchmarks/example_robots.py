@@ -13,7 +13,7 @@ from dataclasses import asdict
 from importlib import metadata
 
 from common import arguments, finish
-from rttrr_pin.urdf.sources import examples
+from rttrr_pin.urdf.catalogue import examples
 from rttrr_pin.validation import Task, validate_many
 
 

@@ -16,8 +16,9 @@ from rttrr_pin.core.joints import FLOATING
 from rttrr_pin.core.model import STANDARD_GRAVITY, Model
 from rttrr_pin.errors import InputError, LoadWarning, ShapeError
 from rttrr_pin.robot import Robot
+from rttrr_pin.urdf.catalogue import robots_in
 from rttrr_pin.urdf.packages import named_packages
-from rttrr_pin.urdf.sources import AnySource, Reading, mjcf_path, robots_in
+from rttrr_pin.urdf.sources import AnySource, Reading, mjcf_path
 
 
 def load(

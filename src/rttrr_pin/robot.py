@@ -13,14 +13,8 @@ from rttrr_pin.core import altered
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import common_shape
 from rttrr_pin.core.dynamics import bodies
-from rttrr_pin.core.identification import (
-    EFFECTS,
-    BaseParameters,
-    as_forces,
-    base_parameters,
-    parameter_names,
-    random_motion,
-)
+from rttrr_pin.core.exciting import as_forces, random_motion
+from rttrr_pin.core.identification import EFFECTS, BaseParameters, base_parameters, parameter_names
 from rttrr_pin.core.inertia import SpatialInertia
 from rttrr_pin.core.inputs import (
     Coordinates,

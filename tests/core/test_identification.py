@@ -228,7 +228,7 @@ def test_what_it_refuses(rttrr: Robot) -> None:
     with pytest.raises(ShapeError, match="pass joint_effects"):
         base.of(wrong)
     with pytest.raises(InputError, match="tolerance"):
-        base_parameters(("m of x",), np.ones((1, 1, 1)), np.nan)
+        rttrr.base_parameters(tolerance=np.nan)
 
 
 def test_effects_do_not_move_the_inertial_basis(rttrr: Robot) -> None:

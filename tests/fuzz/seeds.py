@@ -57,7 +57,7 @@ SMALL = {
 def seeds(with_examples: bool = True) -> dict[str, str]:
     """The texts that are damaged: small ones, the bundled arms, and small example robots if they are installed."""
     from rttrr_pin.errors import InputError
-    from rttrr_pin.urdf.sources import bundled, examples
+    from rttrr_pin.urdf.catalogue import bundled, examples
 
     files = dict(bundled())
     with suppress(InputError):

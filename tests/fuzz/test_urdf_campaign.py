@@ -15,7 +15,7 @@ from fuzz.mutations import mutate
 from fuzz.second_reader import UnreadableError, differences, exact
 from fuzz.seeds import SMALL
 from fuzz.urdf_campaign import case, check
-from rttrr_pin.urdf.sources import bundled
+from rttrr_pin.urdf.catalogue import bundled
 
 TEXTS = SMALL | {name: path.read_text(encoding="utf-8") for name, path in bundled().items()}
 

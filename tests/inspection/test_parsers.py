@@ -348,7 +348,7 @@ def without_shapes(text: str) -> str:
 
 
 def bundled_and_examples() -> dict[str, str | Path]:
-    from rttrr_pin.urdf.sources import bundled, examples
+    from rttrr_pin.urdf.catalogue import bundled, examples
 
     try:
         return {**{name: name for name in bundled()}, **examples()}

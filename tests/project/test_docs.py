@@ -22,7 +22,7 @@ import pytest
 import rttrr_pin
 from rttrr_pin.cli import main
 from rttrr_pin.core import newton_euler
-from rttrr_pin.urdf.sources import bundled
+from rttrr_pin.urdf.catalogue import bundled
 
 ROOT = Path(__file__).parents[2]
 README = ROOT / "README.md"

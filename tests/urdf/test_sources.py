@@ -18,7 +18,7 @@ import yourdfpy
 import rttrr_pin
 from rttrr_pin.core.model import Model
 from rttrr_pin.errors import InputError, LoadWarning, RttrrError, UnknownNameError, UrdfError
-from rttrr_pin.urdf import files, sources
+from rttrr_pin.urdf import catalogue, files, sources
 from rttrr_pin.urdf.yourdfpy_object import as_urdf
 from support.serial_chains import EXAMPLES, random_chain
 
@@ -66,13 +66,13 @@ def test_a_bundled_name_wins_over_a_file(tmp_path: Path, monkeypatch: pytest.Mon
 def test_bundled_robots_are_found_in_a_checkout_and_in_a_wheel(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, repository: Path
 ) -> None:
-    in_checkout = sources.bundled()
+    in_checkout = catalogue.bundled()
     assert set(in_checkout) == {path.stem for path in (repository / "urdf").glob("*.urdf")}
     (tmp_path / "robots").mkdir()
     (tmp_path / "robots" / "mine.urdf").write_text(CHAIN)
-    monkeypatch.setattr(sources, "__file__", str(tmp_path / "model" / "sources.py"))
-    monkeypatch.setattr(sources, "bundled", sources.bundled.__wrapped__)
-    assert set(sources.bundled()) == {"mine"}
+    monkeypatch.setattr(catalogue, "__file__", str(tmp_path / "model" / "catalogue.py"))
+    monkeypatch.setattr(catalogue, "bundled", catalogue.bundled.__wrapped__)
+    assert set(catalogue.bundled()) == {"mine"}
     assert rttrr_pin.load("mine").name == "chain_1"
 
 
@@ -216,13 +216,13 @@ def example_package(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         (tmp_path / place).write_text(random_chain(seed, ("revolute",)))
     monkeypatch.setattr(FakeFile, "top", tmp_path)
     monkeypatch.setattr(metadata, "files", lambda name: [FakeFile(place) for place in places])
-    monkeypatch.setattr(sources, "examples", sources.examples.__wrapped__)
+    monkeypatch.setattr(catalogue, "examples", catalogue.examples.__wrapped__)
     return tmp_path
 
 
 @pytest.mark.usefixtures("example_package")
 def test_example_robots_go_by_their_file_and_where_need_be_their_folder() -> None:
-    assert list(sources.examples()) == ["dog_b/dog", "dog_c/dog", "panda"]
+    assert list(catalogue.examples()) == ["dog_b/dog", "dog_c/dog", "panda"]
     assert rttrr_pin.load("example:panda").name == "chain_0"
     assert rttrr_pin.load("example:panda/panda").name == "chain_0"  # the long name always works
     assert rttrr_pin.load("example:dog_c/dog").name == "chain_2"
@@ -242,14 +242,14 @@ def test_without_the_package_the_extra_is_named(monkeypatch: pytest.MonkeyPatch)
         raise metadata.PackageNotFoundError(name)
 
     monkeypatch.setattr(metadata, "files", missing)
-    monkeypatch.setattr(sources, "examples", sources.examples.__wrapped__)
+    monkeypatch.setattr(catalogue, "examples", catalogue.examples.__wrapped__)
     with pytest.raises(InputError, match=r"pip install 'rttrr-pin\[robots\]'"):
         rttrr_pin.load("example:panda")
 
 
 @pytest.mark.robots
 def test_every_example_robot_loads_or_says_where_it_is_wrong() -> None:
-    known = sources.examples()
+    known = catalogue.examples()
     assert "example_robot_data" not in sys.modules
     refused = {}
     for name in known:

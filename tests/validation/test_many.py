@@ -12,7 +12,7 @@ import pytest
 import rttrr_pin
 from rttrr_pin.cli import main
 from rttrr_pin.errors import InputError, UnknownNameError, UrdfError
-from rttrr_pin.urdf.sources import robots_in
+from rttrr_pin.urdf.catalogue import robots_in
 from rttrr_pin.validation import Task, validate_many
 from support.serial_chains import EXAMPLES
 
@@ -118,7 +118,7 @@ def test_a_folder_that_cannot_be_looked_into_is_told(
 def test_a_folder_as_large_as_a_disk_is_not_searched_through(
     folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    monkeypatch.setattr("rttrr_pin.urdf.sources.MOST_ENTRIES", 1)
+    monkeypatch.setattr("rttrr_pin.urdf.catalogue.MOST_ENTRIES", 1)
     assert main(["validate", str(folder)]) == 2
     assert "holds more than 1 files and folders, of which 0 robots" in capsys.readouterr().err
 

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.inputs import finite, real
@@ -33,17 +33,12 @@ KINDS = {"m": "mass"} | dict.fromkeys(INERTIAL[1:4], "first moment") | dict.from
 """Parameters whose columns can be compared: what of one rounds can be as large as another is. Those of a joint's
 effects hardly round: each is a kind of its own."""
 
-GRAVITY = 10.0
-"""Of this size are the accelerations that are drawn, also where there is no field [m/s^2]."""
 
 SHOWN, PART = 6, 0.1
 """Of parameters that belong together so many are named at most, each of this part of the largest at least."""
 
 DOUBT = 100.0
 """A column is told whose distance is within this factor of the tolerance."""
-
-Y_OVER = 3
-"""Rows for each column: random states tell the rank of a robot with probability 1, and well if there are some more."""
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -202,37 +197,6 @@ def parameter_names(model: Model, joint_effects: bool) -> tuple[str, ...]:
     joints = [joint.name for joint in model.joints if joint.nv and joint_effects]
     links = (f"{parameter} of {link}" for link in model.link_names for parameter in INERTIAL)
     return (*links, *(f"{effect} of {joint}" for joint in joints for effect in EFFECTS))
-
-
-def random_motion(model: Model, columns: int) -> tuple[Array, Array, Array]:
-    """q, v, a, (N, nq) and (N, nv), of so many states that a regressor of so many columns shows its rank.
-
-    With L the mean distance between joints and g that of gravity, lengths are drawn up to L, rates up to sqrt(g / L) of
-    angles and sqrt(g L) of lengths, so that all terms of tau are of about one size in a robot of any size.
-    """
-    rng = np.random.default_rng(0)
-    states = Y_OVER * columns // max(model.nv, 1) + 1
-    turns, L = _turns(model), _length(model)
-    unit = np.where(turns, 1.0, L)
-    largest = (unit * np.where(turns, math.pi, 1.0), unit * math.sqrt(GRAVITY / L), unit * (GRAVITY / L))
-    q, v, a = (rng.uniform(-1.0, 1.0, (states, model.nv)) * size for size in largest)
-    return model.coordinates_at(q), v, a
-
-
-def as_forces(model: Model, Y: Array) -> Array:
-    """Rows of a regressor in one unit: those of moments divided by a length, so that they compare with forces."""
-    return Y / np.where(_turns(model), _length(model), 1.0)[:, None]
-
-
-def _turns(model: Model) -> NDArray[np.bool_]:
-    """For each rate, whether it is of an angle."""
-    return np.array([turn for joint in model.moving for turn in joint.type.rotations], dtype=bool)
-
-
-def _length(model: Model) -> float:
-    """The mean distance between joints that are apart [m]."""
-    lengths = [length for joint in model.joints if (length := float(np.linalg.norm(joint.p)))]
-    return sum(lengths) / len(lengths) if lengths else 1.0
 
 
 def base_parameters(names: Sequence[str], Y: Array, tolerance: float) -> BaseParameters:

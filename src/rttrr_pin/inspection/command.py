@@ -26,11 +26,12 @@ from rttrr_pin.reporting.options import (
     xacro_arguments,
 )
 from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json, write_text
+from rttrr_pin.urdf.catalogue import several
 from rttrr_pin.urdf.files import forget_reads
 from rttrr_pin.urdf.packages import named_packages
 from rttrr_pin.urdf.parser import read_document
 from rttrr_pin.urdf.reader import model_of
-from rttrr_pin.urdf.sources import Reading, Source, find, several
+from rttrr_pin.urdf.sources import Reading, Source, find
 
 
 @click.command

@@ -4,7 +4,7 @@
 |---|---|
 | text that starts with `<` | a URDF |
 | `rttrr` | a bundled robot; it wins over a file of that name (`./rttrr` is the file) |
-| `example:panda` | a file of the package `example-robot-data`, by the names of `examples()` |
+| `example:panda` | a file of the package `example-robot-data`, by the names of `catalogue.examples()` |
 | a path to a folder | the one `.urdf` or `.xacro` file in it or below |
 | a path of a xacro file | what ROS's package `xacro` makes of it, if asked to; messages give the lines of that |
 | any other path | a URDF file |
@@ -17,17 +17,15 @@ from __future__ import annotations
 
 import os
 import sys
-from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cache
 from pathlib import Path
 from typing import Any, TypeAlias
 
-from rttrr_pin.core.inputs import path_of
 from rttrr_pin.core.model import Model, Note
 from rttrr_pin.errors import InputError, UnknownNameError, UrdfError, shortened
-from rttrr_pin.urdf import xacro
+from rttrr_pin.urdf import catalogue, xacro
+from rttrr_pin.urdf.catalogue import EXAMPLE
 from rttrr_pin.urdf.files import read_limited
 from rttrr_pin.urdf.packages import forget_packages
 
@@ -42,17 +40,6 @@ LARGEST_FILE = 16 * 2**20
 
 MOST_TAGS = 20_000
 """Of 1,500 published files none has more than 6,400; to read more takes more seconds than anyone waits."""
-
-EXAMPLE = "example:"
-"""What the name of an example robot starts with."""
-
-EXAMPLES_PACKAGE = "example-robot-data"
-
-SUFFIXES = (".urdf", xacro.SUFFIX)
-"""How the robots in a folder end, in capitals too."""
-
-MOST_ENTRIES = 100_000
-"""Files and folders that are looked through for robots: some seconds, and more than any collection of robots has."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,96 +95,6 @@ class Source:
             )
 
 
-@cache
-def bundled() -> dict[str, Path]:
-    """The robots that come with the package, by name."""
-    packaged = Path(__file__).parents[1] / "robots"
-    in_checkout = Path(__file__).parents[3] / "urdf"  # an editable install leaves the files at the top level
-    folder = packaged if packaged.is_dir() else in_checkout
-    return {path.stem: path for path in sorted(folder.glob("*.urdf"))}
-
-
-@cache
-def examples() -> dict[str, Path]:
-    """The files of the package `example-robot-data`, by name.
-
-    The name is the file's, without `.urdf`: `panda`. Where two files share it, the robot's folder stands before it,
-    without `_description`: `anymal_b_simple/anymal`. The files are found without importing the package's loader.
-
-    Raises:
-        InputError: the package is not installed.
-    """
-    from importlib import metadata  # large, and of no use but for example robots
-
-    try:
-        files = metadata.files(EXAMPLES_PACKAGE) or []
-    except metadata.PackageNotFoundError:
-        raise InputError(
-            f"example robots need the package {EXAMPLES_PACKAGE}: pip install 'rttrr-pin[robots]'"
-        ) from None
-    robots = [file for file in files if file.suffix == ".urdf" and "robots" in file.parts]
-    shared = Counter(file.stem for file in robots)
-    names = {file: file.stem if shared[file.stem] == 1 else f"{_folder(file.parts)}/{file.stem}" for file in robots}
-    return {names[file]: Path(str(file.locate())) for file in sorted(robots, key=names.__getitem__)}
-
-
-def robots_in(folder: str | os.PathLike[str]) -> dict[str, Path]:
-    """The `.urdf` and `.xacro` files in a folder and below, by their path from it; hidden ones are left out.
-
-    A folder below that cannot be looked into stands among them, with a slash behind its name: who reads it says why.
-
-    Raises:
-        UrdfError: it is no folder, cannot be read, holds no such file, or far more than anyone keeps robots among.
-    """
-    top = path_of("folder", folder)
-    shown = shortened(str(folder))
-    try:
-        there = top.is_dir()
-    except (OSError, ValueError) as error:  # a name too long, or with a zero byte
-        raise UrdfError(f"cannot be read: {getattr(error, 'strerror', None) or error}", source=shown) from None
-    if not there:
-        raise UrdfError("is no folder, expected one that holds URDF files", source=shown)
-    shut: dict[Path, str] = {}
-    robots: list[Path] = []
-    seen = 0
-    for place, folders, files in os.walk(
-        top, onerror=lambda error: shut.update({Path(error.filename): str(error.strerror)})
-    ):
-        folders[:] = [name for name in folders if not name.startswith(".")]
-        seen += len(folders) + len(files)
-        if seen > MOST_ENTRIES:
-            raise UrdfError(
-                f"holds more than {MOST_ENTRIES:,} files and folders, of which {len(robots)} robots were found so far: "
-                "name a folder nearer to the robots",
-                source=shown,
-            )
-        robots += [
-            Path(place, name) for name in files if Path(name).suffix.lower() in SUFFIXES and not name.startswith(".")
-        ]
-    if top in shut:
-        raise UrdfError(f"cannot be read: {shut[top]}", source=shown)
-    found = {path.relative_to(top).as_posix(): path for path in robots if _may_be_a_file(path)}
-    found |= {f"{path.relative_to(top).as_posix()}/": path for path in shut}
-    if not found:
-        raise UrdfError("is a folder without a .urdf or .xacro file: name the file", source=shown)
-    return dict(sorted(found.items(), key=lambda item: Path(item[0])))
-
-
-def several(robot: str) -> dict[str, Path]:
-    """The files of `example:all` or of a folder that holds more than one, by name; none where one robot is meant."""
-    if robot == f"{EXAMPLE}all":
-        return examples()
-    files = robots_in(robot) if robot.strip() and Path(robot).is_dir() else {}
-    return files if len(files) > 1 else {}
-
-
-def _may_be_a_file(path: Path) -> bool:
-    try:
-        return path.is_file()
-    except OSError:  # in a folder that may be listed and no more: who reads it says so
-        return True
-
-
 def find(source: AnySource, reading: Reading = AS_IT_STANDS) -> Source:
     """The text behind a source; see the table at the top of this file.
 
@@ -214,27 +111,27 @@ def find(source: AnySource, reading: Reading = AS_IT_STANDS) -> Source:
     if isinstance(source, Source):
         return source
     forget_packages()
-    for library, kind in OBJECTS.items():
+    for library, class_name in OBJECTS.items():
         module = sys.modules.get(library)
-        if module is not None and isinstance(source, getattr(module, kind)):
-            return object_source(source, module, f"{library}.{kind}")
+        if module is not None and isinstance(source, getattr(module, class_name)):
+            return object_source(source, module, f"{library}.{class_name}")
     if isinstance(source, str):
         return _find_text(source, reading)
     if isinstance(source, os.PathLike) and isinstance(os.fspath(source), str):
         return _find_path(Path(source), reading)
     raise InputError(
         f"the source is a {type(source).__name__}, expected a name, a path, the text of a URDF, or an object: "
-        f"{', '.join(f'{library}.{kind}' for library, kind in OBJECTS.items())}"
+        f"{', '.join(f'{library}.{class_name}' for library, class_name in OBJECTS.items())}"
     )
 
 
-def object_source(source: Any, module: Any, kind: str, name: str = "") -> Source:
+def object_source(source: Any, module: Any, class_name: str, name: str = "") -> Source:
     """The text that is written from an object.
 
     Args:
         source: the object.
         module: its library.
-        kind: its class, one of `OBJECTS`.
+        class_name: its class, one of `OBJECTS`.
         name: what to call it in messages, if there is a file of it.
 
     Raises:
@@ -244,19 +141,21 @@ def object_source(source: Any, module: Any, kind: str, name: str = "") -> Source
     from rttrr_pin.urdf.writer import urdf_text
 
     def called(own: str) -> str:
-        return name or f"<{kind} {shortened(own)!r}>"
+        return name or f"<{class_name} {shortened(own)!r}>"
 
-    if kind == "yourdfpy.URDF":
+    if class_name == "yourdfpy.URDF":
         name = called(str(source.robot.name))
         notes = (Note(yourdfpy_object.UNKNOWN, left_out=True),)
-        return Source(name, _encoded(yourdfpy_object.as_urdf(source.robot, name), name), made_from=kind, notes=notes)
-    if kind == "pinocchio.Model":
+        return Source(
+            name, _encoded(yourdfpy_object.as_urdf(source.robot, name), name), made_from=class_name, notes=notes
+        )
+    if class_name == "pinocchio.Model":
         name = called(source.name)
         model = pinocchio_object.as_model(source, name)
     else:
         name = called(mujoco_object.name_of(source))
         model = mujoco_object.as_model(source, module, name)
-    return Source(name, _encoded(urdf_text(model), name), made_from=kind, model=model, notes=model.notes)
+    return Source(name, _encoded(urdf_text(model), name), made_from=class_name, model=model, notes=model.notes)
 
 
 def mjcf_path(source: Any) -> Path | None:
@@ -285,10 +184,10 @@ def _find_text(source: str, reading: Reading) -> Source:
         raise UrdfError("is empty, expected a URDF, its path or a name", source="<string>")
     if "<" in source and "\n" in source.strip():
         raise UrdfError("starts with other text, expected <robot ...> or a path", source="<string>", line=1)
-    if source in bundled():
-        return _file(bundled()[source].name, bundled()[source])
+    if source in catalogue.bundled():
+        return _file(catalogue.bundled()[source].name, catalogue.bundled()[source])
     if source.startswith(EXAMPLE):
-        return _file(source, _example(source.removeprefix(EXAMPLE)))
+        return _file(source, catalogue.example(source.removeprefix(EXAMPLE)))
     return _find_path(Path(source), reading)
 
 
@@ -303,7 +202,7 @@ def _find_path(path: Path, reading: Reading) -> Source:
         raise UrdfError(f"cannot be read: {reason}", source=shortened(str(path))) from None
     if not there:
         fix = f"check the path, or write {EXAMPLE}NAME for an example robot"
-        raise UnknownNameError("bundled robot or file", shortened(str(path)), bundled(), fix)
+        raise UnknownNameError("bundled robot or file", shortened(str(path)), catalogue.bundled(), fix)
     file = _file(str(path), path)
     if (reading.xacro or reading.xacro_args) and xacro.is_xacro(path, file.text):
         text = xacro.expanded(path, reading.xacro_args, reading.packages)
@@ -318,10 +217,10 @@ def _file(name: str, path: Path) -> Source:
 
 
 def _only_robot(folder: Path) -> Path:
-    found = robots_in(folder)
-    robots = {name: path for name, path in found.items() if not name.endswith("/")}
+    entries = catalogue.robots_in(folder)
+    robots = {name: path for name, path in entries.items() if not name.endswith("/")}
     if not robots:
-        raise UrdfError(f"holds no robot, and {', '.join(found)} cannot be read", source=shortened(str(folder)))
+        raise UrdfError(f"holds no robot, and {', '.join(entries)} cannot be read", source=shortened(str(folder)))
     if len(robots) > 1:
         names = ", ".join(list(robots)[:12]) + (f", ... ({len(robots)} in all)" if len(robots) > 12 else "")
         raise UrdfError(
@@ -329,21 +228,6 @@ def _only_robot(folder: Path) -> Path:
             source=shortened(str(folder)),
         )
     return next(iter(robots.values()))
-
-
-def _example(name: str) -> Path:
-    """The file of an example robot; its folder may stand before the name even where the name alone would do."""
-    known = examples()
-    matches = [path for path in known.values() if name in (f"{_folder(path.parts)}/{path.stem}", path.stem)]
-    if name in known or len(matches) == 1:
-        return known.get(name, matches[0])
-    namesakes = [other for other in known if other.rpartition("/")[2] == name]
-    raise UnknownNameError("example robot", shortened(name), namesakes or known)
-
-
-def _folder(parts: tuple[str, ...]) -> str:
-    """The robot's folder in `.../robots/panda_description/urdf/panda.urdf`, without `_description`."""
-    return parts[parts.index("robots") + 1].removesuffix("_description")
 
 
 def _encoded(text: str, name: str) -> bytes:

@@ -13,7 +13,7 @@ from rttrr_pin.errors import InputError
 from rttrr_pin.reporting.options import flag, outcome, robot, seed
 from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json
 from rttrr_pin.robot import Robot
-from rttrr_pin.urdf.sources import several
+from rttrr_pin.urdf.catalogue import several
 from rttrr_pin.validation.options import RunOptions, conditions, drawn, payload, programs
 
 STATES = 10_000
