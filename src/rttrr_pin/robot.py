@@ -24,7 +24,6 @@ from rttrr_pin.core.inputs import (
     names_of,
     not_negative,
     real,
-    relative_tolerance,
     vectors,
 )
 from rttrr_pin.core.joint import JointEffects
@@ -242,7 +241,7 @@ class Robot:
         """
         names = parameter_names(self.model, joint_effects)
         Y = self.regressor(*random_motion(self.model, len(names)), joint_effects)
-        return base_parameters(names, as_forces(self.model, Y), relative_tolerance(tolerance))
+        return base_parameters(names, as_forces(self.model, Y), tolerance)
 
     def jacobian(
         self,
@@ -313,7 +312,7 @@ class Robot:
         J = self.jacobian(q, link, point, expressed_in)
         driving = coordinates("tau", tau, self.model.moving)
         common_shape({"q and point": J.shape[:-2], "tau": driving.shape[:-1]})
-        return estimate(J, driving, relative_tolerance(tolerance))
+        return estimate(J, driving, tolerance)
 
     def derivatives(
         self, q: Coordinates, v: Coordinates, a: Coordinates, payload: Payloads = None

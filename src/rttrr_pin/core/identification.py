@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.inputs import finite, real
+from rttrr_pin.core.inputs import finite, real, relative_tolerance
 from rttrr_pin.core.model import Model
 from rttrr_pin.errors import ShapeError
 
@@ -209,6 +209,7 @@ def base_parameters(names: Sequence[str], Y: Array, tolerance: float) -> BasePar
         Y: the regressor at random states, (N, nv, columns), its rows in one unit.
         tolerance: see `BaseParameters`.
     """
+    tolerance = relative_tolerance(tolerance)
     W = Y.reshape(math.prod(Y.shape[:-1]), len(names))
     norms = np.linalg.norm(W, axis=0)
     scale = _of_kind(names, norms)

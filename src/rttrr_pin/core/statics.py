@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.inputs import relative_tolerance
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -53,6 +54,7 @@ def estimate(J: Array, tau: Array, tolerance: float) -> WrenchEstimate:
         tau: (..., nv).
         tolerance: singular values at most this part of the largest count as zero.
     """
+    tolerance = relative_tolerance(tolerance)
     A = np.swapaxes(J, -1, -2)
     U, s, V = np.linalg.svd(A, full_matrices=False)
     felt = s > tolerance * s.max(axis=-1, keepdims=True, initial=0.0)
