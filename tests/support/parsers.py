@@ -89,8 +89,16 @@ def drake_behaviour(text: str, document: UrdfDocument) -> Behaviour:
         if document.root != "world":
             plant.WeldFrames(plant.world_frame(), plant.GetFrameByName(document.root, instance))
         plant.Finalize()
-    except RuntimeError:
+    except (RuntimeError, ValueError, SystemExit):  # the last where its C++ gives up
         return Behaviour.REFUSE
+    for joint in document.joints.values():
+        if joint.type in ("revolute", "continuous", "prismatic"):
+            limits, loaded = joint.limits, plant.GetJointByName(joint.name, instance)
+            end = 0.0 if joint.limit is not None and joint.type != "continuous" else np.inf
+            wanted = (limits.get("lower", -end), limits.get("upper", end)) if end == 0.0 else (-np.inf, np.inf)
+            ranges = (loaded.position_lower_limits()[0], loaded.position_upper_limits()[0])
+            if ranges != wanted or loaded.velocity_upper_limits()[0] != limits.get("velocity", np.inf):
+                return Behaviour.ALTER
     same = plant.num_velocities(instance) - plant.num_constraints() == freedom(document)
     same &= all(plant.HasJointNamed(name, instance) for name in document.joints)
     for name, body in document.links.items():

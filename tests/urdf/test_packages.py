@@ -60,6 +60,17 @@ def test_a_manifest_is_better_than_a_name(tmp_path: Path) -> None:
     assert find_package("hand", tmp_path, {}) == wanted
 
 
+def test_the_nearest_is_taken(tmp_path: Path) -> None:
+    """A folder of the name above the file, before another repository's package; but not before one that it holds."""
+    package(tmp_path / "other" / "arm")
+    start = tmp_path / "mine" / "arm" / "urdf"
+    start.mkdir(parents=True)
+    assert find_package("arm", start, {}) == start.parent
+    forget_packages()
+    wanted = package(tmp_path / "mine" / "arm" / "ros" / "arm")
+    assert find_package("arm", start, {}) == wanted
+
+
 @pytest.mark.parametrize("name", ["", ".", "..", "a/b", "../arm", "x" * 300, "a\0b", "a\\b"])
 def test_odd_names_find_nothing(tmp_path: Path, name: str) -> None:
     package(tmp_path / "arm")
@@ -75,6 +86,7 @@ def test_packages_of_ros(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
     assert find_package("arm", start, {}) == catkin and find_package("leg", start, {}) == ament
     other = package(tmp_path / "other")
     assert find_package("arm", start, {"arm": other}) == other
+    assert find_package("gone", start, {}) is None
 
 
 def test_xacro_finds_packages(tmp_path: Path) -> None:
@@ -112,8 +124,9 @@ IN_VAIN = {
         '<xacro:arg name="set" default="1"/><link name="$(arg side)"/><link name="$(arg dof)_$(arg set)_$(arg given)"/>',
         ("no value for side, dof;", "--xacro-arg side:=VALUE --xacro-arg dof:=VALUE"),
     ),
-    "file": ('<xacro:include filename="gone.xacro"/>', ("gone.xacro, which does not exist", "--package")),
-    "folder": ('<xacro:include filename="$(find here)/gone.xacro"/>', ("gone.xacro, which does not exist",)),
+    "file": ('<xacro:include filename="gone.xacro"/>', ("gone.xacro: No such file", "--package")),
+    "folder": ('<xacro:include filename="$(find here)/gone.xacro"/>', ("gone.xacro: No such file",)),
+    "folder for a file": ('<xacro:include filename="$(find here)"/>', ("Is a directory", "--xacro-arg")),
     "part": ('<xacro:macro name="arm"><link name="x"/></xacro:macro>', ("has no <link>", "the file that includes it")),
 }
 """What a xacro file asks for in vain, and what is said of it: all that is missing, and the options."""

@@ -279,7 +279,7 @@ def test_xacro_is_expanded(tmp_path: Path) -> None:
         (
             "1.5",
             '<xacro:include filename="none.xacro"/>',
-            "xacro cannot expand it: it reads .*none.xacro, which does not exist",
+            "xacro cannot expand it: it reads .*none.xacro: No such file",
         ),
         ("1.5", '<origin xyz="$(arg x) 0 0"/>', "add --xacro-arg x:=VALUE"),
         ("1.5", "<unclosed>", "xacro cannot expand it: mismatched tag"),

@@ -4,9 +4,21 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator
+from math import hypot
 
 from rttrr_pin.inspection import parser_rules as rules
-from rttrr_pin.inspection.rule import DRAKE, MUJOCO, PINOCCHIO, URDFDOM, YOURDFPY, Behaviour, Places, Rule, faults
+from rttrr_pin.inspection.rule import (
+    DRAKE,
+    MUJOCO,
+    PINOCCHIO,
+    URDFDOM,
+    YOURDFPY,
+    Behaviour,
+    Places,
+    Rule,
+    faults,
+    joints,
+)
 from rttrr_pin.urdf.document import UrdfDocument
 from rttrr_pin.urdf.faults import Fault
 from rttrr_pin.urdf.vocabulary import LIMITS_1_2
@@ -32,13 +44,7 @@ def _of_version(holds: Callable[[tuple[int, int]], bool]) -> Places:
     return lambda document: [document.name] if holds(document.version) else []
 
 
-def _names_version(document: UrdfDocument) -> Iterator[str]:
-    """The robot, if it names the version of its format."""
-    if re.search(r"<robot\b[^>]*\sversion\s*=", document.file_text):
-        yield document.name
-
-
-def _not_one_root(document: UrdfDocument) -> Iterator[str]:
+def not_one_root(document: UrdfDocument) -> Iterator[str]:
     """The robot, if it has several roots or none."""
     wrong = (fault for fault in document.faults if fault.tag == "robot")
     if any(fault.kind == "tree" or (fault.kind == "loop" and "no root" in fault.message) for fault in wrong):
@@ -82,10 +88,15 @@ def _missing_moment(document: UrdfDocument) -> Iterator[str]:
             yield fault.name
 
 
+def unreadable_numbers(document: UrdfDocument) -> Iterator[Fault]:
+    """Numbers that cannot be read."""
+    numbers = (fault for fault in document.faults if fault.kind == "number" or fault.element == "mass" == fault.kind)
+    return (fault for fault in numbers if not fault.missing)
+
+
 def _unreadable(document: UrdfDocument) -> Iterator[str]:
     """Links and joints with a number that cannot be read."""
-    numbers = (fault for fault in document.faults if fault.kind == "number" or fault.element == "mass" == fault.kind)
-    return (fault.name for fault in numbers if not fault.missing)
+    return (fault.name for fault in unreadable_numbers(document))
 
 
 def _zero_axis(document: UrdfDocument) -> Iterator[str]:
@@ -94,23 +105,16 @@ def _zero_axis(document: UrdfDocument) -> Iterator[str]:
     return (name for name in undirected if document.joints[name].type != "planar")
 
 
+def shorter_axis(length: float) -> Places:
+    """Joints whose axis is not zero, and no longer than that."""
+    with_axis = ("revolute", "continuous", "prismatic")
+    return joints(lambda joint: joint.type in with_axis and hypot(*joint.axis.floats) <= length)
+
+
 def _with_capsule(document: UrdfDocument) -> Iterator[str]:
     """Links that are drawn as capsules."""
     links = document.links.values()
     return (link.name for link in links if any(shape.tag == "capsule" for shape in link.shapes))
-
-
-def _drake_transmission(document: UrdfDocument) -> Iterator[str]:
-    """Simple transmissions without a joint or an actuator of their own; Drake skips those without effort."""
-    drivers = set[str]()
-    for each in document.transmissions:
-        joint = document.joints.get(each.joint)
-        if each.type and "SimpleTransmission" not in each.type:
-            continue
-        if not each.type or joint is None or not each.actuator or each.actuator in drivers:
-            yield each.name or document.name
-        elif joint.moves and joint.limits.get("effort", 1.0) > 0.0:
-            drivers.add(each.actuator)
 
 
 FAULT_RULES = (
@@ -140,9 +144,6 @@ FAULT_RULES = (
     Rule("urdfdom-newer", URDFDOM, Behaviour.EITHER,
          "older versions of urdfdom refuse what is of another version than 1.0",
          "urdfdom: urdf_parser/src/model.cpp, parseURDF", _of_version(lambda version: version > (1, 0))),
-    Rule("drake-version", (DRAKE,), Behaviour.WARN,
-         "the version is ignored, with a warning",
-         "drake: multibody/parsing/detail_urdf_parser.cc, UrdfParser::Parse", _names_version),
     Rule("quaternion", (MUJOCO, DRAKE, YOURDFPY), Behaviour.ALTER,
          "quat_xyzw is ignored: the frame is not turned",
          "yourdfpy: urdf.py, URDF._parse_origin", _turned_by_quaternion),
@@ -169,7 +170,7 @@ FAULT_RULES = (
          "a number of a joint cannot be read",
          "urdfdom: urdf_parser/src/joint.cpp, parseJoint",
          faults("number", lambda fault: _in_joint(fault) and not fault.missing)),
-    Rule("number", (MUJOCO, DRAKE, YOURDFPY), Behaviour.REFUSE,
+    Rule("number", (MUJOCO, YOURDFPY), Behaviour.REFUSE,
          "a number cannot be read",
          "mujoco: src/xml/xml_util.cc, mjXUtil::ReadAttr", _unreadable),
     Rule("mujoco-axis", (MUJOCO,), Behaviour.REFUSE,
@@ -192,21 +193,18 @@ FAULT_RULES = (
     Rule("zero-axis", (MUJOCO, DRAKE), Behaviour.REFUSE,
          "an axis is 0 0 0",
          "mujoco: src/user/user_objects.cc, mjCJoint::Compile", _zero_axis),
+    Rule("mujoco-short", (MUJOCO,), Behaviour.REFUSE,
+         "an axis is not longer than 1e-7, its square than mjEPS",
+         "mujoco: src/user/user_objects.cc, mjCJoint::Compile", shorter_axis(1e-7)),
     Rule("twice", (MUJOCO,), Behaviour.REFUSE,
          "an element that counts once stands twice",
          "mujoco: src/xml/xml_util.cc, mjXSchema::Check", faults("twice")),
-    Rule("range", (DRAKE,), Behaviour.REFUSE,
-         "a lower limit is above the upper one",
-         "drake: multibody/tree/revolute_joint.h, RevoluteJoint", faults("range")),
     Rule("mujoco-reversed", (MUJOCO,), Behaviour.ALTER,
          "a range whose lower limit is above the upper one is no limit: the joint moves freely",
          "mujoco: src/xml/xml_urdf.cc, mjXURDF::Joint", faults("range")),
-    Rule("negative-limit", (PINOCCHIO, DRAKE), Behaviour.REFUSE,
+    Rule("negative-limit", (PINOCCHIO,), Behaviour.REFUSE,
          "a limit of effort or velocity is negative",
          "pinocchio: include/pinocchio/multibody/model.hxx, ModelTpl::addJoint", faults("limit")),
-    Rule("drake-follow", (DRAKE,), Behaviour.REFUSE,
-         "a <mimic> leads to no joint that could be followed",
-         "drake: multibody/parsing/detail_urdf_parser.cc, UrdfParser::ParseMimicTag", faults("mimic")),
     Rule("mimic-nothing", (*URDFDOM, MUJOCO), Behaviour.REFUSE,
          "a <mimic> names no joint",
          "urdfdom: urdf_parser/src/joint.cpp, parseJointMimic", faults("mimic", lambda fault: fault.missing)),
@@ -222,7 +220,7 @@ FAULT_RULES = (
          "urdfdom: urdf_parser/src/joint.cpp, parseJoint; urdf_parser/src/model.cpp, initTree", faults("joint")),
     Rule("roots", (*URDFDOM,), Behaviour.REFUSE,
          "the links are no tree with one root",
-         "urdfdom: urdf_parser/src/model.cpp, initRoot", _not_one_root),
+         "urdfdom: urdf_parser/src/model.cpp, initRoot", not_one_root),
     Rule("loop", (*URDFDOM, YOURDFPY), Behaviour.ALTER,
          "links that hang on a loop of joints beside the tree are left out without a word",
          "pinocchio: src/parsers/urdf/model.cpp, parseTree", faults("loop")),
@@ -238,17 +236,6 @@ FAULT_RULES = (
     Rule("not-modelled", (*URDFDOM, MUJOCO, YOURDFPY), Behaviour.ALTER,
          "an element that carries mechanics, or closes a loop, is skipped without a word",
          "urdfdom: urdf_parser/src/model.cpp, parseURDF", faults("not-modelled")),
-    Rule("drake-loop", (DRAKE,), Behaviour.REFUSE,
-         "there is a <loop_joint>",
-         "drake: multibody/parsing/detail_urdf_parser.cc, UrdfParser::Parse",
-         faults("not-modelled", lambda fault: fault.element == "loop_joint")),
-    Rule("drake-not-modelled", (DRAKE,), Behaviour.ALTER,
-         "an element that carries mechanics, or closes a loop, and is not Drake's own is skipped",
-         "drake: multibody/parsing/detail_urdf_parser.cc, UrdfParser::Parse",
-         faults("not-modelled", lambda fault: not fault.element.startswith(("loop_joint", "drake:")))),
-    Rule("drake-transmission", (DRAKE,), Behaviour.REFUSE,
-         "a SimpleTransmission has no joint that exists, no actuator, or the actuator of another one",
-         "drake: multibody/parsing/detail_urdf_parser.cc, UrdfParser::ParseTransmission", _drake_transmission),
     Rule("yourdfpy-namespace", (YOURDFPY,), Behaviour.ALTER,
          "elements in a default namespace are not found",
          "yourdfpy: urdf.py, URDF._parse_robot", faults("namespace", lambda fault: fault.element == "robot")),

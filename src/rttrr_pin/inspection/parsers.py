@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from rttrr_pin.inspection import parser_rules as rules
+from rttrr_pin.inspection.drake_faults import DRAKE_RULES
 from rttrr_pin.inspection.parser_faults import FAULT_RULES
 from rttrr_pin.inspection.rule import (
     DRAKE,
@@ -161,6 +162,7 @@ RULES = (
          "planar and floating joints do not move, and a planar one counts as two degrees of freedom",
          "yourdfpy: urdf.py, URDF._forward_kinematics_joint and URDF.num_dofs", PLANAR_OR_FLOATING),
     *FAULT_RULES,
+    *DRAKE_RULES,
 )  # fmt: skip
 
 

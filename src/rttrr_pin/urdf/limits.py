@@ -41,7 +41,8 @@ def read_limit(joint: Element, joint_type: JointType, version: tuple[int, int]) 
             del numbers[key]
     lower, upper = (numbers.get(key, Number("0")) for key in ("lower", "upper"))
     if joint_type.limits != "none" and float(lower) > float(upper):
-        message = f"lower limit {float(lower)} is above the upper one, {float(upper)}: exchange them"
+        message = f"lower limit {float(lower)} is above the upper one, {float(upper)}: "
+        message += "exchange them" if {"lower", "upper"} <= numbers.keys() else "write both, since 0 stands for none"
         limit.assume("range", message, f"a range from {float(upper)} to {float(lower)}")
         limit.write(lower=upper.text, upper=lower.text)
         numbers |= {"lower": upper, "upper": lower}

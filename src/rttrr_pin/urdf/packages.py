@@ -1,8 +1,9 @@
 """Folders of ROS packages, without ROS: what `package://NAME/...` and `$(find NAME)` stand for.
 
-A package is a folder with a `package.xml`, which names it. It is looked for in this order: where the user says; upwards
-from the file; beside the file and beside each folder above it; in the folders of ROS_PACKAGE_PATH, AMENT_PREFIX_PATH
-and CMAKE_PREFIX_PATH. A folder of the package's name without `package.xml` is taken where there is no better one.
+A package is a folder with a `package.xml`, which names it. It is looked for in this order: where the user says; from
+the file upwards, in each folder and what stands in it, the nearest first; in the folders of ROS_PACKAGE_PATH,
+AMENT_PREFIX_PATH and CMAKE_PREFIX_PATH. A folder of the package's name without `package.xml` is taken where there is
+no better one as near.
 """
 
 from __future__ import annotations
@@ -91,29 +92,33 @@ PREFIXES = ("AMENT_PREFIX_PATH", "CMAKE_PREFIX_PATH")
 def _looked_for(name: str, start: Path | None, paths: tuple[str, ...]) -> Path | None:
     """The same; for given values of the environment variables."""
     ros, *prefixes = ([Path(part) for part in path.split(os.pathsep) if part] for path in paths)
-    by_name: list[Path] = []
-    for folder in (*_around(start), *_installed(name, ros, prefixes)):
-        manifest = _named_in(folder)
-        if manifest == name:
-            return folder
-        if not manifest and folder.name == name:
-            by_name.append(folder)
-    return next(iter(by_name), None)
+    for folders in (*_around(start), _installed(name, ros, prefixes)):
+        by_name: list[Path] = []
+        for folder in folders:
+            manifest = _named_in(folder)
+            if manifest == name:
+                return folder
+            if manifest == "" and folder.name == name:
+                by_name.append(folder)
+        if by_name:
+            return by_name[0]
+    return None
 
 
-def _around(start: Path | None) -> Iterator[Path]:
-    """The folder, those above, and what stands in each of them, one level down and two."""
-    above = () if start is None else (start, *start.parents)[:LEVELS]
-    yield from above
-    yield from islice(_beside(above), MOST_FOLDERS)
+def _around(start: Path | None) -> Iterator[list[Path]]:
+    """The folder and each above, with what stands in it, one level down and two."""
+    left = MOST_FOLDERS
+    for folder in () if start is None else (start, *start.parents)[:LEVELS]:
+        within = list(islice(_within(folder), left))
+        left -= len(within)
+        yield [folder, *within]
 
 
-def _beside(above: tuple[Path, ...]) -> Iterator[Path]:
-    """The folders in each of some, and those in them."""
-    for folder in above:
-        for child in _folders(folder):
-            yield child
-            yield from _folders(child)
+def _within(folder: Path) -> Iterator[Path]:
+    """The folders in one, and those in them."""
+    for child in _folders(folder):
+        yield child
+        yield from _folders(child)
 
 
 def _installed(name: str, ros: list[Path], prefixes: list[list[Path]]) -> Iterator[Path]:

@@ -137,10 +137,10 @@ def _reason(
                 f"Undefined substitution argument: no value for {', '.join(names)}; add {options} "
                 f"(load(..., xacro_args={{{', '.join(f'{name!r}: VALUE' for name in names)}}}))"
             )
-        if isinstance(cause, FileNotFoundError) and cause.filename:
+        if isinstance(cause, OSError) and cause.filename:
             return (
-                f"it reads {cause.filename}, which does not exist: check that name; of a package that lies elsewhere, "
-                "name the folder by --package NAME=FOLDER"
+                f"it reads {cause.filename}: {cause.strerror}; check that name, the arguments that it is made of "
+                "(--xacro-arg NAME:=VALUE), and the folder of its package (--package NAME=FOLDER)"
             )
     return TWICE.sub(r"\1", " ".join(str(error).split())) or repr(error)
 
