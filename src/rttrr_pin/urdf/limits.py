@@ -1,4 +1,4 @@
-"""The limits of joints: those that the file sets, and those that other parsers ask for."""
+"""The limits of joints, those that the file sets and those that other parsers ask for; damping and friction."""
 
 from __future__ import annotations
 
@@ -46,6 +46,21 @@ def read_limit(joint: Element, joint_type: JointType, version: tuple[int, int]) 
         limit.assume("range", message, f"a range from {float(upper)} to {float(lower)}")
         limit.write(lower=upper.text, upper=lower.text)
         numbers |= {"lower": upper, "upper": lower}
+    return numbers
+
+
+def read_dynamics(joint: Element) -> dict[str, Number]:
+    """Damping and friction, where given, are numbers that are not negative."""
+    dynamics = joint.child("dynamics")
+    numbers = {key: Number("0") for key in ATTRIBUTES["dynamics"]}
+    for key in numbers:
+        if dynamics is not None and key in dynamics.xml.attrib:
+            numbers[key] = dynamics.number(key)
+            if float(numbers[key]) < 0.0:
+                message = f"{key} is {numbers[key].text}: expected a number that is not negative"
+                dynamics.assume("dynamics", message, f"{key} 0")
+                dynamics.write(**{key: "0"})
+                numbers[key] = Number("0")
     return numbers
 
 

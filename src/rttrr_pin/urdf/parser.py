@@ -24,7 +24,7 @@ from rttrr_pin.urdf.document import UrdfDocument, UrdfJoint, UrdfLink, UrdfMimic
 from rttrr_pin.urdf.elements import Element, parse_xml
 from rttrr_pin.urdf.faults import Log
 from rttrr_pin.urdf.inertial import ENTRIES, Placement, UrdfInertial
-from rttrr_pin.urdf.limits import has_direction, read_limit
+from rttrr_pin.urdf.limits import has_direction, read_dynamics, read_limit
 from rttrr_pin.urdf.sources import AS_IT_STANDS, AnySource, Reading, find
 from rttrr_pin.urdf.tree import check_mimics, check_tree
 from rttrr_pin.urdf.unused import check_asked, transmissions_of
@@ -242,23 +242,8 @@ def _joint(name: str, joint: Element, version: tuple[int, int]) -> UrdfJoint | N
         axis=_axis(joint, joint_type),
         limit=read_limit(joint, joint_type, version),
         mimic=_mimic(joint, joint_type),
-        **_dynamics(joint),
+        **read_dynamics(joint),
     )
-
-
-def _dynamics(joint: Element) -> dict[str, Number]:
-    """Damping and friction, where given, are numbers that are not negative."""
-    dynamics = joint.child("dynamics")
-    numbers = {key: Number("0") for key in ATTRIBUTES["dynamics"]}
-    for key in numbers:
-        if dynamics is not None and key in dynamics.xml.attrib:
-            numbers[key] = dynamics.number(key)
-            if float(numbers[key]) < 0.0:
-                message = f"{key} is {numbers[key].text}: expected a number that is not negative"
-                dynamics.assume("dynamics", message, f"{key} 0")
-                dynamics.write(**{key: "0"})
-                numbers[key] = Number("0")
-    return numbers
 
 
 def _axis(joint: Element, joint_type: JointType) -> NumberList:
