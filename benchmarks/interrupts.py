@@ -4,7 +4,8 @@ Each try starts a command that writes all files that it can, sends a signal afte
 command takes, to the process or to its whole group as a terminal does, and looks at what is left: the exit code is that
 of the signal (or the command's own, where it had ended before), each file is whole or absent, what the last sentence
 says of them is true, and no process is left. A signal in the first tenths of a second, before Python runs the program's
-first line, ends the process by the system's own rule.
+first line, ends the process by the system's own rule, or by Python's: while it imports `site` and what `.pth` files of
+installed packages name, it ends with exit code 1 and a fatal error of its own.
 
 Run: python benchmarks/interrupts.py [--tries N] [--seed S] [--save]. Exit 1 if a try fails.
 """
@@ -47,6 +48,9 @@ COMMANDS: dict[str, list[str]] = {
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
+OF_PYTHON = "Fatal Python error: init_import_site"
+"""What Python says where it is interrupted before it runs any program."""
+
 PATIENCE = 20.0
 """Seconds after which a process counts as left behind."""
 
@@ -76,15 +80,21 @@ def whole(path: Path, wanted: str) -> bool:
         return False
 
 
+def at_start(code: int, number: signal.Signals, error: str) -> bool:
+    """Whether it ended before the program's first line."""
+    return code == -number or (code == 1 and error.startswith(OF_PYTHON))
+
+
 def faults(
     process: subprocess.Popen[str], number: signal.Signals, error: str, folder: Path, complete: dict[str, Any]
 ) -> Iterator[str]:
     """What is wrong with what a try has left."""
+    early = at_start(process.returncode, number, error)
     code, files = process.returncode, {path.name: path for path in folder.iterdir()}
     before = code == complete["code"] and set(files) == set(complete["files"])  # it had ended
-    if code not in (128 + number, -number) and not before:
+    if code != 128 + number and not (before or early):
         yield f"exit code {code}"
-    if "Traceback" in error and code != -number:
+    if "Traceback" in error and not early:
         yield f"a traceback: {error.splitlines()[-1]}"
     for name, path in files.items():
         if name not in complete["files"] or not whole(path, complete["files"][name]):
@@ -137,7 +147,8 @@ def main() -> int:
                 slowest = max(slowest, time.monotonic() - sent)
                 wrong = list(faults(process, number, error, Path(folder), complete[name]))
             code = process.returncode
-            kind = "at start" if code == -number else "interrupted" if code == 128 + number else "had ended"
+            early = at_start(code, number, error)
+            kind = "at start" if early else "interrupted" if code == 128 + number else "had ended"
             outcomes[name][kind] += 1
             for what in wrong:
                 failed.append(f"try {k}, {name}, {number.name} after {delay:.2f} s: {what}")
