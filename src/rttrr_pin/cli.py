@@ -81,8 +81,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         code = _guarded(words)
         ended, sentence = interrupts.ending()
-    except KeyboardInterrupt:
-        ended, sentence = interrupts.ending(signal.SIGINT)
+    except BaseException as error:  # a library may make another exception of a signal's: Element.extend a TypeError
+        ended, sentence = interrupts.ending(signal.SIGINT if isinstance(error, KeyboardInterrupt) else 0)
+        if not ended:
+            raise
     if ended:
         code = ended
         _say(sentence)

@@ -59,6 +59,7 @@ def test_a_file_that_is_there_is_kept_unless_forced(tmp_path: Path, capsys: pyte
         (["RT", "--name", "a b"], "choose another name"),
         (["RT", "-o", "{folder}"], "is a folder"),
         (["RT", "-o", "{folder}/none/my.urdf"], "cannot be written"),
+        (["RT", "-o", "\0"], "cannot be written"),
     ],
 )
 def test_unusable_input_says_why_and_writes_nothing(

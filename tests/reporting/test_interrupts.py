@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from xml.etree.ElementTree import Element
 
 import pytest
 
@@ -184,3 +185,21 @@ def test_no_worker_outlives_the_program(number: signal.Signals, whom: str, folde
     assert not (tmp_path / "out.json").exists()
     if number != signal.SIGKILL:
         assert (out, error) == ("", f"{interrupts.ENDING[number]}: nothing was written\n")
+
+
+@SIGNALS
+def test_a_signal_of_which_a_library_makes_another_exception(
+    number: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """`Element.extend` raises TypeError, whatever a generator raises."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    monkeypatch.setattr("rttrr_pin.cli._run", lambda words: Element("a").extend(kill(number) for _ in "a"))
+    assert main(["new", "RT"]) == 128 + number
+    signal.signal(signal.SIGINT, before)
+    assert capsys.readouterr().err.endswith("nothing was written\n")
+
+
+def test_an_exception_without_a_signal_is_raised(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("rttrr_pin.cli._run", lambda words: Element("a").extend(1 / 0 for _ in "a"))
+    with pytest.raises(TypeError):
+        main(["new", "RT"])

@@ -257,6 +257,17 @@ def test_the_line_of_a_document_type_is_found_behind_comments() -> None:
     assert rttrr_pin.load(text.replace("\n<!DOCTYPE robot>\n", "")).name == "two"
 
 
+@pytest.mark.parametrize("many", ["<!-- a -- b -->\n", "<gazebo><a:b/></gazebo>\n"])
+def test_what_stands_behind_many_faults_is_seen(many: str) -> None:
+    """libxml2 tells a hundred errors and no more: a comment that never ends, behind them, would end the robot."""
+    text = URDF.replace('<link name="hand"/>', many * 150 + '<link name="hand"/>')
+    assert rttrr_pin.load(text).link_names == rttrr_pin.load(URDF).link_names
+    assert len(rttrr_pin.load(text).model.joints) == len(rttrr_pin.load(URDF).model.joints)
+    for wrong in ("<!--<!--", "<![CDATA["):
+        with pytest.raises(UrdfError, match="well-formed"):
+            rttrr_pin.load(text.replace('<link name="hand"/>', wrong + '<link name="hand"/>'))
+
+
 def test_external_entities_are_never_opened(tmp_path: Path) -> None:
     """Opening the pipe would wait for a writer for ever."""
     os.mkfifo(tmp_path / "pipe")

@@ -54,6 +54,7 @@ from rttrr_pin.implementations.library import (
 from rttrr_pin.implementations.pinocchio_model import (
     built_model,
     differences,
+    merged_apart,
     pin_joints,
     pin_links,
     snapped_axes,
@@ -102,6 +103,7 @@ class Pinocchio:
         for joint in self.joints:
             self.pin_model.armature[joint.v] = joint.joint.effects.armature
         self.links = pin_links(model, self.pin_model)
+        self._apart = merged_apart(model, self.pin_model)
         self.data = self.pin_model.createData()
         fixed = self.links.fixed
         self._carrier = [p if p >= 0 and fixed[p] else -1 for p in (joint.parent for joint in model.joints)]
@@ -119,7 +121,7 @@ class Pinocchio:
         f, n, moments = self._across_joints(record, F, N, loads)
         tau, tau_joint = driving_forces(self.model, self.joints, states, record.tau, has_armature=True)
         values = {"tau": tau, "F": F, "N": N, "f": f, "n": n}
-        cancelling = rounding(self.pin_model, self.links, record.spatial, self._reach(motion))
+        cancelling = rounding(self.pin_model, self.links, self._apart, record.spatial, self._reach(motion))
         cancelling["f"][:, self._idle] = cancelling["n"][:, self._idle] = 0.0
         cancelling["n"] += OPERATIONS * EPS * moments
         allowance = of_library(batch, values, tau_joint, cancelling)

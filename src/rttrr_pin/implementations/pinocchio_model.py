@@ -15,12 +15,16 @@ from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints import FLOATING
 from rttrr_pin.core.model import Link, Model
+from rttrr_pin.core.scalars import EPS
 from rttrr_pin.errors import ImplementationError
 from rttrr_pin.implementations import library
 from rttrr_pin.implementations.library import norms
 
 SHOWN = 4
 """Messages of urdfdom that are repeated in full."""
+
+MERGING = 8
+"""Roundings of an inertia that is turned, moved and added to another."""
 
 SNAPPED = 1e-12
 """Pinocchio takes an axis so near to x, y or z as that (`isApprox` of Eigen); -x, -y and -z are axes like any other."""
@@ -180,6 +184,22 @@ def _placement_differences(joint: Joint, expected: _Placed, built: Any) -> Itera
     return library.placement_differences(
         joint, (expected.R, expected.p), built.rotation, built.translation, expected.length, expected.turns
     )
+
+
+def merged_apart(model: Model, pin_model: Any) -> dict[int, library.Scales]:
+    """By Pinocchio's joint, how far mass, centre and tensor of a body of several links may be from the file's.
+
+    What merging rounds is some eps of the longest length, in any direction: here as it is, and what our own sum rounds.
+    """
+    apart = {}
+    for i, parts in _merged(model, _placed(model)).items():
+        if len(parts) > 1:
+            number = pin_model.getJointId(model.joints[i].name)
+            inertia, (expected, scales) = pin_model.inertias[number], _inertia(model, parts)
+            built = zip(expected, (inertia.mass, inertia.lever, inertia.inertia), scales, strict=True)
+            mass, com, tensor = (float(norm(np.ravel(x - y))) + MERGING * EPS * float(scale) for x, y, scale in built)
+            apart[number] = mass, com, tensor
+    return apart
 
 
 def _limits(pin_model: Any, q: int, v: int) -> dict[str, float]:

@@ -250,6 +250,8 @@ def _json_lines(path: Path, model: Model) -> tuple[Texts, list[int]]:
         for column, text in row.items():
             columns.setdefault(column, []).append(text)
         numbers.append(line_number)
+        if not row:
+            break  # no line has columns, and what is missing is said at once
     if not numbers:
         raise InputError(f"{path.name} is empty: expected an object for each state")
     return columns, numbers

@@ -21,6 +21,8 @@ NOT_FINITE = re.compile(r"(-?)\b(nan|inf|infinity)\b", re.IGNORECASE)
 FULL = 16
 """Significant digits from which a printed number stands for one float64."""
 
+NUMBERS_AS_TEXT = json.JSONDecoder(parse_float=str, parse_int=str, parse_constant=str)
+
 FARTHEST = 400
 """Exponents beyond which every decimal is 0 or infinite in float64."""
 
@@ -123,7 +125,7 @@ def json_of(line: str) -> Any:
         ValueError: it is none.
     """
     try:
-        return json.loads(line, parse_float=str, parse_int=str, parse_constant=str)
+        return NUMBERS_AS_TEXT.decode(line)
     except (ValueError, RecursionError) as error:
         words = NOT_FINITE.sub(lambda match: "NaN" if match[2].lower() == "nan" else f"{match[1]}Infinity", line)
         if words != line:

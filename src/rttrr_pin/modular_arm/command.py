@@ -16,7 +16,7 @@ from rttrr_pin.reporting.output import AGREE
 
 @click.command
 @click.argument("code", help="One letter per joint from the base to the tool: R (revolute), T (prismatic).")
-@click.option("--output", "-o", type=click.Path(path_type=Path), help="The file to write; without it, standard output.")
+@click.option("--output", "-o", type=Path, help="The file to write; without it, standard output.")
 @click.option("--name", help="The robot's name in the file; without it, the code in small letters.")
 @flag("--force", help="Overwrite a file that is there.")
 def new(code: str, output: Path | None, name: str | None, force: bool) -> int:

@@ -6,6 +6,7 @@ import io
 import re
 from collections.abc import Iterable
 from typing import Any
+from xml.parsers import expat
 
 from lxml import etree
 
@@ -28,6 +29,9 @@ LET_THROUGH = {
     "NS_ERR_UNDEFINED_NAMESPACE": ("namespace", "the prefix is not declared"),
 }
 """Errors of libxml2 that leave the tree whole: the kind of the fault, and its message."""
+
+MOST_ERRORS = 100
+"""libxml2 tells no more of them (XML_MAX_ERRORS): what is wrong behind them it does not say."""
 
 UNEXPANDED = "this is xacro, which must be expanded: add --xacro (xacro=True), or run xacro on it"
 """What is wrong with a value such as ${mass}."""
@@ -201,6 +205,8 @@ def parse_xml(source: Source, log: Log) -> Any:
     if parser.error_log and b"<!DOCTYPE" in _without_comments(source.text):
         raise _doctype(source)
     _log_errors(parser.error_log, root, log)
+    if len(parser.error_log) >= MOST_ERRORS:
+        _check_whole(source)
     if root is None:
         raise UrdfError("is no well-formed XML: it cannot be parsed", source=source.name)
     info = root.getroottree().docinfo
@@ -226,6 +232,15 @@ def _log_errors(errors: Any, root: Any, log: Log) -> None:
         if (kind, error.line) not in seen:
             log.faults.append(Fault(kind, Level.NOTE, "robot", "", error.line, "", message))
         seen.add((kind, error.line))
+
+
+def _check_whole(source: Source) -> None:
+    """That expat finds no error but in comments and prefixes: it knows of no namespaces."""
+    try:
+        expat.ParserCreate().Parse(_without_comments(source.text), True)
+    except expat.ExpatError as error:
+        message = f"is no well-formed XML: {expat.ErrorString(error.code)}, behind {MOST_ERRORS} other errors"
+        raise UrdfError(message, source=source.name, line=error.lineno) from None
 
 
 def _with_blanks(text: bytes) -> bytes:
