@@ -73,7 +73,7 @@ def test_reported_files_agree(repository: Path, name: str, sampling: str, base: 
     result = validate(robot, "recursion", n_states=200, sampling=sampling)
     assert result.passed and not any(one.wrong for one in result.adjudications)
     assert ["takes the axis" in note for note in result.to_dict()["notes"]] == [True]
-    assert compare_state(robot, 3, "recursion", sampling=sampling).to_dict()["notes"] == result.notes
+    assert result.notes[0] in compare_state(robot, 3, "recursion", sampling=sampling).to_dict()["notes"]
 
 
 @pytest.mark.parametrize("quantity", ["tau", "F", "N", "f", "n"])
