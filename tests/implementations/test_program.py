@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import copy
 import gc
 import os
+import pickle
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -190,3 +193,15 @@ def alive(process: int) -> bool:
             return False
         time.sleep(0.02)
     return True
+
+
+COPIES: list[Callable[[Program], Program]] = [copy.copy, copy.deepcopy, lambda one: pickle.loads(pickle.dumps(one))]
+
+
+@pytest.mark.parametrize("copied", COPIES)
+def test_a_copy_asks_a_program_of_its_own(tmp_path: Path, copied: Callable[[Program], Program]) -> None:
+    one = made(tmp_path, RIGHT)
+    other = copied(one)
+    first, second, third = (each.evaluate(states(5)).values["tau"] for each in (one, other, one))
+    assert (first == second).all() and (first == third).all()
+    assert one._child is not None and other._child is not None and one._child is not other._child

@@ -87,6 +87,9 @@ class Program:
         self._digits = {key: Digits.of(text for reply in texts for text in reply[key]) for key in self.quantities}
         self.digits, self.notes = judged_at(self.name, self._digits.values(), "it prints them")
 
+    def __getstate__(self) -> dict[str, object]:
+        return vars(self) | {"_child": None}  # a copy starts one of its own
+
     def evaluate(self, batch: Batch) -> Evaluation:
         """What the program replies, state by state.
 
