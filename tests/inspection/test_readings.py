@@ -74,14 +74,19 @@ class Body:
         self.mass, self.R = part.mass, rotation(rpy)
         self.part = part.inertia
         self.tensor = self.R @ part.inertia @ self.R.T
+        self.other_way: Triple = (-rpy[0], -rpy[1], -rpy[2])
+        self.back = rotation(self.other_way)
 
-    def written(self, tensor: Array, mass: float | None = None, digits: int | None = 12) -> str:
-        """The file, with a tensor in the axes of the link; without digits, with the entries as they are."""
+    def written(
+        self, tensor: Array, mass: float | None = None, digits: int | None = 12, rpy: Triple = (0.0, 0.0, 0.0)
+    ) -> str:
+        """The file, with a tensor in the axes of the inertial frame; without digits, with the entries as they are."""
         entries = [tensor[at] for at in ENTRIES.values()]
         words = [f"{entry:.{digits}g}" if digits else str(entry) for entry in entries]
         place = {"xyz": "{} {} {}".format(*self.xyz), "rpy": "{} {} {}".format(*self.rpy)}
         return arm(
-            inertial(self.mass if mass is None else mass, words, xyz=place["xyz"]) + shape(self.tag, "visual", **place)
+            inertial(self.mass if mass is None else mass, words, place["xyz"], "{} {} {}".format(*rpy))
+            + shape(self.tag, "visual", **place)
         )
 
 
@@ -144,7 +149,13 @@ def cut(body: Body) -> str:
 SLIPS: dict[str, list[Slip]] = {
     "unit": [*map(in_unit, TENSOR_UNITS.values()), *map(mass_in_unit, MASS_UNITS.values())],
     "sign": [lambda body: body.written(2.0 * np.diag(body.tensor.diagonal()) - body.tensor)],
-    "axes": [lambda body: body.written(body.part), lambda body: body.written(body.R.T @ body.part @ body.R)],
+    "axes": [
+        lambda body: body.written(body.part),
+        lambda body: body.written(body.R.T @ body.part @ body.R),
+        lambda body: body.written(body.back @ body.part @ body.back.T),
+        lambda body: body.written(body.part, rpy=body.other_way),
+        lambda body: body.written(body.tensor, rpy=body.rpy),
+    ],
     "origin": [about_origin],
     "order": [*map(in_order, ORDERS)],
     "rows": [in_order("ixx ixy ixz ixy iyy iyz")],

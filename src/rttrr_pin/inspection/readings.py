@@ -11,9 +11,10 @@ import numpy as np
 from rttrr_pin.core.algebra import Vector
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.inertia import point_tensor
+from rttrr_pin.core.solids import rotation
 from rttrr_pin.inspection.cases import Case, distance
 from rttrr_pin.inspection.exact import DIAGONAL, nearest_possible
-from rttrr_pin.urdf.inertial import ENTRIES, symmetric
+from rttrr_pin.urdf.inertial import ENTRIES, Placement, symmetric
 
 DUST = 1e-12, 1e-14
 """Of the largest entry; and of the mass, in m^2, a radius of gyration of 100 nm: rounding of zero."""
@@ -163,12 +164,22 @@ def axes(case: Case) -> Iterator[Variant]:
         tensor = case.inertial.tensor
         yield Variant("the tensor is in the axes of the link already, and rpy turns it once more", tensor)
         yield Variant("the rpy of the inertial frame turns it the wrong way", own.T @ tensor @ own)
+        back = _back(case.inertial.origin)
+        yield Variant("the angles of the inertial frame have the wrong sign", back @ tensor @ back.T)
     for shape in case.link.shapes:
         if shape.origin.rotated:
             R, part = shape.origin.R, f"the {shape.role} {shape.tag}"
             turned = R @ case.inertial.inertia @ R.T
             yield Variant(f"the tensor is in the axes of {part}, whose rotation is lost", turned)
             yield Variant(f"the tensor is turned the wrong way out of the axes of {part}", R @ turned @ R.T)
+            back = R @ _back(shape.origin).T
+            meant = back @ case.inertial.inertia @ back.T
+            yield Variant(f"the tensor is turned by the angles of {part} with the wrong sign", meant)
+
+
+def _back(placement: Placement) -> Array:
+    """The rotation by the angles with the other sign, which is the inverse where there is one angle."""
+    return rotation([-angle for angle in placement.angles])
 
 
 def origin(case: Case) -> Iterator[Variant]:
