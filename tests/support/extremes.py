@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -97,17 +97,19 @@ def heavier(model: Model, link: int) -> Model:
     return replace(model, links=tuple(links))
 
 
-def false_verdicts(seed: int) -> tuple[Counter[str], list[str]]:
-    """What was counted on one tree in one state, and the false verdicts in words.
+def false_verdicts(
+    seed: int, text: str = "", state: Callable[[Model, np.random.Generator], Batch] = extreme_state
+) -> tuple[Counter[str], list[str]]:
+    """What was counted on one tree in one state, and the false verdicts in words; an extreme tree unless text is given.
 
     A false alarm: two right programs lie apart by more than their allowances. A blind spot: the recursion of a robot
     with one mass larger by `PLANTED`, by which F of that link is, is within rounding of a right program; both knowing
     that F to a tenth of it. What a program's own rounding hides is counted apart.
     """
     rng = np.random.default_rng(seed)
-    text = extreme_tree(seed, 1 + seed % LARGEST, ORDERS, signs=seed % 3 != 0)
+    text = text or extreme_tree(seed, 1 + seed % LARGEST, ORDERS, signs=seed % 3 != 0)
     model = rttrr_pin.load(text, base="floating" if seed % 2 else "fixed", friction=True).model
-    batch = extreme_state(model, rng)
+    batch = state(model, rng)
     count, false = Counter[str](trees=1), list[str]()
     with np.errstate(all="ignore"):
         right = make_implementation("recursion", model).evaluate(batch)

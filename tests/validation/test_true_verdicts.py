@@ -16,7 +16,8 @@ from rttrr_pin.cli import main
 from rttrr_pin.errors import InputError
 from rttrr_pin.exact.adjudication import Deviation
 from rttrr_pin.validation import compare_state, validate
-from support.extremes import false_verdicts
+from support.extremes import extreme_state, false_verdicts
+from support.hostile import KINDS, usual_state
 from support.implementations import altered
 from support.tolerances import EPS
 
@@ -30,6 +31,16 @@ def test_extreme_trees_have_no_false_verdict(seed: int) -> None:
     """More of them in `benchmarks/extreme_trees.py`."""
     count, false = false_verdicts(seed)
     assert count["lagrange: compared"] == 1 and false == []
+
+
+@pytest.mark.one_in(3)
+@pytest.mark.parametrize("seed", range(10, 14))
+@pytest.mark.parametrize("kind", KINDS)
+def test_trees_that_are_hostile_in_one_way_have_none(kind: Any, seed: int) -> None:
+    text = kind(seed, np.random.default_rng(seed))
+    for state in (extreme_state, usual_state) if seed % 2 else (usual_state,):
+        count, false = false_verdicts(seed, text, state)
+        assert count["lagrange: compared"] == 1 and false == []
 
 
 @pytest.mark.one_in(4)
