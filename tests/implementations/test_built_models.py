@@ -152,6 +152,21 @@ def test_a_difference_of_1e_6_of_what_cancels_is_a_mismatch(lengths: list[float]
         make_implementation(library, other)
 
 
+def test_a_centre_that_pinocchio_loses_is_a_mismatch_however_small_the_mass() -> None:
+    """It moves the centre of masses below eps to the origin; products of such masses must not hide that."""
+    text = arm((0, 0, 1)).model.urdf
+    light = rttrr_pin.load(re.sub(r'<mass value="[^"]*"/>', '<mass value="5e-324"/>', text))
+    with pytest.raises(ModelMismatchError, match=r"link 'a' centre of mass: \[0., 0., 0.\]"):
+        make_implementation("pinocchio", light.model)
+
+
+def test_all_snapped_axes_are_in_one_note() -> None:
+    text = arm(tilted(1, 1e-15)).model.urdf
+    robot = rttrr_pin.load(text.replace('xyz="0.6 0.0 0.8"', f'xyz="{numbers(tilted(2, 1e-15))}"'))
+    (note,) = make_implementation("pinocchio", robot.model).notes  # type: ignore[attr-defined]
+    assert "joint 'to_a'" in note and "joint 'to_b'" in note and note.count("allowed for") == 1
+
+
 def test_what_urdfdom_prints_is_told_and_kept_from_the_terminal(
     repository: Path, capfd: pytest.CaptureFixture[str]
 ) -> None:

@@ -88,8 +88,8 @@ def cut_angles(seed: int, rng: Generator) -> str:
 
 
 def no_tensors(seed: int, rng: Generator) -> str:
-    """Tensors that no body has, and masses from the smallest double to 1e150."""
-    moments, masses = ["0", "1e-300", "1", "-1", "1e150", "0.1"], ["0", "5e-324", "1e-300", "1", "1e150", "-1e150"]
+    """Tensors that no body has, and masses from 1e-300 to 1e150."""
+    moments, masses = ["0", "1e-300", "1", "-1", "1e150", "0.1"], ["0", "1e-300", "1", "1e150", "-1e150"]
     text = random_tree(seed, 2 + seed % 5, ("revolute", "fixed", "floating", "planar"))
     return _with_numbers(
         text, lambda name: str(rng.choice({"value": masses}.get(name, moments if name[0] == "i" else [""])))

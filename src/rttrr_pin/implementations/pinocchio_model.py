@@ -309,10 +309,11 @@ def _inertia(model: Model, parts: list[_Placed]) -> tuple[library.Inertia, libra
     masses = np.array([link.mass for link in links])
     centres = np.array([part.p + part.R @ link.com for part, link in zip(parts, links, strict=True)])
     mass, sizes = float(masses.sum()), np.abs(masses)
-    com = masses @ centres / mass if mass else centres[0]
+    weights = np.ldexp(masses, -np.frexp(sizes.max())[1])  # exact, and the products of the smallest doubles stay
+    com = weights @ centres / weights.sum() if mass else centres[0]
     tensor = np.zeros((3, 3))
     for part, link, c in zip(parts, links, centres, strict=True):
         tensor += part.R @ link.inertia @ part.R.T + link.mass * point_tensor(Vector.of(c - com)).array
     lengths = np.array([part.length for part in parts]) + norms(link.com for link in links)
     moments = sizes @ lengths**2 + norms(link.inertia for link in links).sum()
-    return (mass, com, tensor), (sizes.sum(), sizes @ lengths / abs(mass) if mass else 0.0, moments)
+    return (mass, com, tensor), (sizes.sum(), np.abs(weights) @ lengths / abs(weights.sum()) if mass else 0.0, moments)
