@@ -9,12 +9,9 @@ from typing import TYPE_CHECKING, Any, Literal, cast, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
-from rttrr_pin.core import altered
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import common_shape
 from rttrr_pin.core.dynamics import bodies
-from rttrr_pin.core.exciting import as_forces, random_motion
-from rttrr_pin.core.identification import EFFECTS, BaseParameters, base_parameters, parameter_names
 from rttrr_pin.core.inertia import SpatialInertia
 from rttrr_pin.core.inputs import (
     Coordinates,
@@ -30,12 +27,13 @@ from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.payload import Payloads, load_of, loads_of, payload_link
 from rttrr_pin.core.scalars import FLOAT
-from rttrr_pin.core.statics import WrenchEstimate, at_point, estimate, turned
 from rttrr_pin.core.wrench import RESULTS, LinkWrenches, Wrench
 from rttrr_pin.errors import InputError, UnknownNameError, shortened
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # what few robots are asked for is loaded when one is
     from rttrr_pin.compile import Kernel
+    from rttrr_pin.core.identification import BaseParameters
+    from rttrr_pin.core.statics import WrenchEstimate
     from rttrr_pin.exact.enclosures import Enclosures
     from rttrr_pin.exact.parameters import Parameters
 
@@ -224,7 +222,7 @@ class Robot:
             parameters += [link.m, *link.h, x.x, x.y, y.y, x.z, y.z, z.z]
         if joint_effects:
             moving = (joint.effects for joint in self.model.joints if joint.nv)
-            parameters += [getattr(own, effect) for own in moving for effect in EFFECTS]
+            parameters += [x for own in moving for x in (own.armature, own.damping, own.friction)]
         return np.array(parameters, dtype=np.float64)
 
     def base_parameters(self, joint_effects: bool = False, tolerance: float = 1e-9) -> BaseParameters:
@@ -239,6 +237,9 @@ class Robot:
             tolerance: how far a column may be from the span of those before it to depend on them, relative to the
                 largest of its kind (`BaseParameters.tolerance`).
         """
+        from rttrr_pin.core.exciting import as_forces, random_motion
+        from rttrr_pin.core.identification import base_parameters, parameter_names
+
         names = parameter_names(self.model, joint_effects)
         Y = self.regressor(*random_motion(self.model, len(names)), joint_effects)
         return base_parameters(names, as_forces(self.model, Y), tolerance)
@@ -261,13 +262,15 @@ class Robot:
         Raises:
             InputError: there are no such axes; or several last links and no name.
         """
+        from rttrr_pin.core import statics
+
         choice("expressed_in", expressed_in, "link", "base")
         i = payload_link(self.model, link)
         parts = self._kernel(("link_jacobians", "link_placements"))(q)
         J, r = parts["link_jacobians"][..., i, :, :], vectors("point", point)
         common_shape({"q": J.shape[:-2], "point": r.shape[:-1]})
-        J = at_point(J, r)
-        return turned(J, parts["link_placements"][..., i, :, :3]) if expressed_in == "base" else J
+        J = statics.at_point(J, r)
+        return statics.turned(J, parts["link_placements"][..., i, :, :3]) if expressed_in == "base" else J
 
     def wrench_torque(self, q: Coordinates, wrench: Wrench, point: ArrayLike = (0.0, 0.0, 0.0)) -> Array:
         """The driving forces that a wrench at a point of a link takes, to be added to tau: J^T w, (..., nv) [N m or N].
@@ -309,10 +312,12 @@ class Robot:
             What the robot exerts on its surroundings; where joints do not feel all six components, of the wrenches that
             explain tau the smallest.
         """
+        from rttrr_pin.core import statics
+
         J = self.jacobian(q, link, point, expressed_in)
         driving = coordinates("tau", tau, self.model.moving)
         common_shape({"q and point": J.shape[:-2], "tau": driving.shape[:-1]})
-        return estimate(J, driving, tolerance)
+        return statics.estimate(J, driving, tolerance)
 
     def derivatives(
         self, q: Coordinates, v: Coordinates, a: Coordinates, payload: Payloads = None
@@ -342,6 +347,8 @@ class Robot:
             UnknownNameError: no joint that moves is called so.
             NumberError: a number is not finite, or is negative.
         """
+        from rttrr_pin.core.identification import EFFECTS
+
         moving = [joint.name for joint in self.model.joints if joint.nv]
         if not isinstance(effects, Mapping):
             raise InputError(f"effects is a {type(effects).__name__}: pass a dict from joint name to JointEffects(...)")
@@ -387,6 +394,8 @@ class Robot:
         tensor = np.zeros((3, 3)) if inertia is None else finite("inertia", real("inertia", inertia))
         body = Link(name, kilograms, vectors("com", com), tensor)
         parent = payload_link(self.model, link)
+        from rttrr_pin.core import altered
+
         model = altered.with_body(self.model, body, parent)
         if model.document is not None:
             from rttrr_pin.urdf.altered import with_body  # loads lxml
@@ -411,6 +420,8 @@ class Robot:
             UnknownNameError: no joint that moves by itself is called so.
             NumberError: the length of a quaternion is not 1 to rounding.
         """
+        from rttrr_pin.core import altered
+
         model = altered.with_locked(self.model, joints)
         if model.document is not None:
             from rttrr_pin.urdf.altered import with_fixed  # loads lxml

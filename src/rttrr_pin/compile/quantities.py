@@ -8,19 +8,22 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from rttrr_pin.core.algebra import Matrix, Scalar, Vector
 from rttrr_pin.core.dual import Dual, part_of
 from rttrr_pin.core.dynamics import Result, bodies, dynamics, generalised_forces, joint_effects, joint_states
-from rttrr_pin.core.energy import LinkState, moving_links
 from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.newton_euler import Payload
 from rttrr_pin.core.scalars import Arithmetic
 from rttrr_pin.core.tangent import over_duals, tangent
+
+if TYPE_CHECKING:
+    from rttrr_pin.core.energy import LinkState
 
 
 @dataclass(frozen=True)
@@ -122,6 +125,8 @@ def _joint_regressor(motion: Motion) -> list[Scalar]:
 
 def _link_states(motion: Motion) -> list[LinkState]:
     """Placement and velocity of each link, as duals along the rates."""
+    from rttrr_pin.core.energy import moving_links
+
     arithmetic, rates = over_duals(motion.arithmetic), [Dual(0.0, {k: 1.0}) for k in range(motion.model.nv)]
     links = motion.links or bodies(motion.model, motion.arithmetic)
     return moving_links(motion.model, links, motion.q, rates, arithmetic)

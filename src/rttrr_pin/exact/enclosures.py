@@ -21,7 +21,6 @@ from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import QUANTITIES, LinkWrenches
 from rttrr_pin.exact.intervals import INTERVAL, LoadFrames, Run, flat_dynamics, interval, precision
 from rttrr_pin.exact.parameters import Parameters, exact_parameters
-from rttrr_pin.exact.rounding import bounded_dynamics
 
 PRECISIONS = (128, 256, 512, 1024, 2048, 4096)
 """Bits of the intervals, tried in this order. At 64 bits, which take as long, one state in two is not tight."""
@@ -149,6 +148,8 @@ def enclose(
     @cache
     def rounding() -> dict[str, Array]:
         """A running error bound on each number of each state; asked for only where something is near zero."""
+        from rttrr_pin.exact.rounding import bounded_dynamics
+
         return dict(bounded_dynamics(model, q, v, a, loads)[1].items())
 
     numbers, bits, tight = _enclosed(model, np.hstack([q, v, a, *vectors]), frames, parameters, rounding)

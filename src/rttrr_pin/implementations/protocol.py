@@ -16,7 +16,6 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import LINK_QUANTITIES, RESULTS, LinkWrenches
 from rttrr_pin.errors import ImplementationError, NumberError, RttrrError, told
-from rttrr_pin.exact.rounding import bounded_dynamics
 
 LARGEST = 16
 """Links up to which a program with bounds compiles in two seconds or less; it is kept on disk from then on."""
@@ -56,6 +55,8 @@ class Batch:
     @cached_property
     def recursion(self) -> tuple[LinkWrenches, LinkWrenches]:
         """The reference recursion in floats, and a running error bound on each of its numbers."""
+        from rttrr_pin.exact.rounding import bounded_dynamics
+
         with np.errstate(over="ignore", invalid="ignore"):
             return bounded_dynamics(self.model, self.q, self.v, self.a, self.loads)
 

@@ -19,10 +19,10 @@ from rttrr_pin.exact import Adjudication, Assessment, Deviation
 from rttrr_pin.implementations import Evaluation
 from rttrr_pin.validation.compare import ADJUDICATED, Row
 from rttrr_pin.validation.run import Validation
-from rttrr_pin.validation.state import StateComparison, StateReport
 
 if TYPE_CHECKING:
     from rttrr_pin.validation.search import WorstCase  # loads scipy
+    from rttrr_pin.validation.state import StateComparison, StateReport
 
 LEGEND = (
     "relative: of |reference|, where that is not rounding itself; error / tolerance: 1 is all that rounding can explain"
