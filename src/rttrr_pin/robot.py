@@ -390,12 +390,12 @@ class Robot:
             NumberError: a number is not finite, or the mass is negative.
             InputError: the tensor is not symmetric, or the name is taken.
         """
+        from rttrr_pin.core import altered
+
         kilograms = not_negative("mass", mass)
         tensor = np.zeros((3, 3)) if inertia is None else finite("inertia", real("inertia", inertia))
         body = Link(name, kilograms, vectors("com", com), tensor)
         parent = payload_link(self.model, link)
-        from rttrr_pin.core import altered
-
         model = altered.with_body(self.model, body, parent)
         if model.document is not None:
             from rttrr_pin.urdf.altered import with_body  # loads lxml
