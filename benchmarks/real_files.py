@@ -302,6 +302,7 @@ def tally(names: list[str], results: list[list[Outcome]]) -> dict[str, Any]:
         counts["pinocchio_loads_we_refuse"] += pinocchio and not way
         counts["we_load_pinocchio_refuses"] += bool(way) and not pinocchio
         compared = [outcome for outcome in outcomes if outcome.step.startswith("validate")]
+        counts["validated"] += bool(compared)
         counts["agree"] += bool(compared) and all(outcome.verdict == "ok" for outcome in compared)
         counts["mismatch"] += any(outcome.verdict == "mismatch" for outcome in compared)
         counts["disagree"] += any(outcome.verdict == "disagree" for outcome in compared)
@@ -313,9 +314,10 @@ def tally(names: list[str], results: list[list[Outcome]]) -> dict[str, Any]:
 
 COLUMNS = [
     "files", "pinocchio", "plain", "lenient", "refused", "pinocchio_loads_we_refuse", "we_load_pinocchio_refuses",
-    "agree", "mismatch", "disagree", "crash", "time", "inspected",
+    "validated", "agree", "mismatch", "disagree", "crash", "time", "inspected",
 ]  # fmt: skip
-"""Numbers of files; "agree" on both bases, without a joint on the floating one; "mismatch", "disagree" on one."""
+"""Numbers of files; of those that were "validated": "agree" on both bases, without a joint on the floating one;
+"mismatch", "disagree" on one."""
 
 
 def reasons(names: list[str], results: list[list[Outcome]]) -> list[dict[str, Any]]:
