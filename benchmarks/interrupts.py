@@ -60,7 +60,7 @@ def start(words: list[str], folder: Path, cache: Path) -> subprocess.Popen[str]:
     return subprocess.Popen(
         [sys.executable, "-m", "rttrr_pin", *words],
         cwd=folder,
-        env=os.environ | {"RTTRR_PIN_CACHE": str(cache), "COLUMNS": "100"},
+        env=os.environ | {"RTTRR_PIN_CACHE": str(cache), "COLUMNS": "100", "PYTHONFAULTHANDLER": "1"},
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,
@@ -93,7 +93,7 @@ def faults(
     code, files = process.returncode, {path.name: path for path in folder.iterdir()}
     before = code == complete["code"] and set(files) == set(complete["files"])  # it had ended
     if code != 128 + number and not (before or early):
-        yield f"exit code {code}"
+        yield f"exit code {code}: {error[-1000:]!r}"
     if "Traceback" in error and not early:
         yield f"a traceback: {error.splitlines()[-1]}"
     for name, path in files.items():
