@@ -98,7 +98,8 @@ def whole(element: Any) -> bool:
     for other, name in (("iyx", "ixy"), ("izx", "ixz"), ("izy", "iyz")):
         if other in got and name in got and numbers(element, other, 1) == numbers(element, name, 1):
             got.remove(other)
-    more = got - ATTRIBUTES[element.tag]
+    there = ATTRIBUTES[element.tag] & got
+    more = {other for other in got - there if not any(other in name for name in there)}  # yz, where iyz is there
     return not more or (element.tag in ("origin", "axis") and ATTRIBUTES[element.tag] <= got)
 
 
