@@ -11,7 +11,7 @@ from rttrr_pin.core.arrays import Array, norm
 from rttrr_pin.core.scalars import EPS
 from rttrr_pin.implementations.allowance import add_inwards
 from rttrr_pin.implementations.library import Scales, norms
-from rttrr_pin.implementations.pinocchio_model import PinLinks
+from rttrr_pin.implementations.pinocchio_links import PinLinks
 
 OPERATIONS = 4
 """Roundings on the way of each term over one joint: a vector product, a sum, a change of frame."""

@@ -1,0 +1,60 @@
+"""Where Pinocchio has the links of a file."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.core.arrays import Array, norm
+from rttrr_pin.implementations.library import product
+
+
+class PinLinks(NamedTuple):
+    """The links of the file, where Pinocchio has them: on a joint, at a placement; (links, ...) each.
+
+    Attributes:
+        fixed: whether a fixed joint carries it, so that Pinocchio merged it into the body of `joint`.
+        joint: Pinocchio's joint that moves it; 0 is the universe.
+        R: maps vectors of the link frame to the joint frame.
+        p: from the joint frame's origin to the link's, in the joint frame [m].
+        mass: [kg].
+        com: in the link frame [m].
+        inertia: about the centre of mass, in link axes [kg m^2].
+    """
+
+    fixed: NDArray[np.bool_]
+    joint: NDArray[np.int64]
+    R: Array
+    p: Array
+    mass: Array
+    com: Array
+    inertia: Array
+
+    def at(self, which: int | NDArray[np.bool_]) -> PinLinks:
+        """One of them, or some."""
+        return PinLinks._make(x[which] for x in self)
+
+    @property
+    def arm(self) -> Array:
+        """The distances of their origins from the joints' [m]."""
+        return norm(self.p)
+
+    @property
+    def massive(self) -> NDArray[np.bool_]:
+        """Which have any inertia."""
+        massive: NDArray[np.bool_] = (self.mass != 0.0) | self.inertia.any(axis=(-2, -1))
+        return massive
+
+    def to_joint(self, f: Array, n: Array) -> Array:
+        """Forces and moments at the links' origins, (N, ..., 3) each, at the joints': (N, ..., 6)."""
+        f, n = product(self.R, f), product(self.R, n)
+        return np.concatenate([f, n + np.cross(self.p, f)], axis=-1)
+
+    def from_joint(self, force: Array) -> Array:
+        """Spatial forces at the joints' origins, (N, ..., 6), at the links'."""
+        f, n = force[..., :3], force[..., 3:]
+        n = n - np.cross(self.p, f)
+        R_T = np.swapaxes(self.R, -1, -2)
+        return np.concatenate([product(R_T, f), product(R_T, n)], axis=-1)
