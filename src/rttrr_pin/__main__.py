@@ -20,6 +20,10 @@ def run() -> int:
         code, sentence = interrupts.ending(signal.SIGINT)
         print(sentence, file=sys.stderr)
         interrupts.ignore()
+    except Exception:  # Python would end with 1, which is a verdict
+        sys.excepthook(*sys.exc_info())
+        print("error: this is a fault of rttrr-pin: please report it, with the lines above", file=sys.stderr)
+        code = 2
     return code
 
 

@@ -5,6 +5,7 @@ Exit codes: 0 agree, 1 disagree, 2 unusable input, 130 interrupted, 143 terminat
 
 from __future__ import annotations
 
+import errno
 import signal
 import sys
 import warnings
@@ -114,10 +115,13 @@ def _guarded(words: list[str]) -> int:
     except (MemoryError, RecursionError) as error:
         what = "there is not enough memory" if isinstance(error, MemoryError) else str(error)
         _say(f"error: {what}: the robot is too large for the limits of this process")
+    except ImportError as error:  # under a limit of memory, or where an installation is damaged
+        _say(f"error: a library cannot be loaded: {error}")
     except OSError as error:  # a folder that may not be read; without a name, a full disk behind stdout
-        if error.filename is None:
+        gone = error.errno == errno.ENOENT and error.filename is None
+        if error.filename is None and not gone:
             discard_stdout()
-        _say(f"error: {error.filename or 'standard output'}: {error.strerror}")
+        _say(f"error: {error.filename or ('the current folder' if gone else 'standard output')}: {error.strerror}")
     return UNUSABLE
 
 

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from rttrr_pin.__main__ import run
 from rttrr_pin.cli import main
 from support.serial_chains import EXAMPLES
 
@@ -163,6 +164,36 @@ def test_a_file_that_may_not_be_read_is_named(
     monkeypatch.setattr("rttrr_pin.cli._run", refuse)
     assert main(["validate", "robots"]) == 2
     assert capsys.readouterr().err == "error: robots: Permission denied\n"
+
+
+@pytest.mark.parametrize(
+    ("error", "said"),
+    [
+        (MemoryError(), "error: there is not enough memory"),
+        (RecursionError("too deep"), "error: too deep"),
+        (ImportError("libx.so: failed to map segment"), "error: a library cannot be loaded: libx.so"),
+        (FileNotFoundError(2, "No such file or directory"), "error: the current folder: No such file"),
+    ],
+)
+def test_no_failure_is_a_verdict(
+    error: Exception, said: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def fail(*_: object) -> None:
+        raise error
+
+    monkeypatch.setattr("rttrr_pin.cli._run", fail)
+    assert main(["validate"]) == 2
+    assert said in capsys.readouterr().err
+
+
+def test_a_fault_of_ours_is_no_verdict(capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
+    def fail() -> int:
+        raise KeyError("x")
+
+    monkeypatch.setattr("rttrr_pin.cli.main", fail)
+    monkeypatch.setattr("rttrr_pin.__main__.interrupts.install", lambda: None)
+    assert run() == 2
+    assert "KeyError: 'x'\nerror: this is a fault of rttrr-pin" in capsys.readouterr().err
 
 
 def test_interrupt_leaves_cleanly(tmp_path: Path) -> None:
