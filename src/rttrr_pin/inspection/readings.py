@@ -9,9 +9,8 @@ from itertools import permutations
 import numpy as np
 
 from rttrr_pin.core.algebra import Vector
-from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.arrays import Array, rotation
 from rttrr_pin.core.inertia import point_tensor
-from rttrr_pin.core.solids import rotation
 from rttrr_pin.inspection.cases import Case, distance
 from rttrr_pin.inspection.exact import DIAGONAL, nearest_possible
 from rttrr_pin.urdf.inertial import ENTRIES, Placement, symmetric
