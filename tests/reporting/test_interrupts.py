@@ -203,3 +203,13 @@ def test_an_exception_without_a_signal_is_raised(monkeypatch: pytest.MonkeyPatch
     monkeypatch.setattr("rttrr_pin.cli._run", lambda words: Element("a").extend(1 / 0 for _ in "a"))
     with pytest.raises(TypeError):
         main(["new", "RT"])
+
+
+def test_a_signal_that_waits_ends_with_the_program() -> None:
+    """Python gives up its handlers before it ends: the timer of a signal that waits would end the process by itself."""
+    code = (
+        "import atexit, signal, time; from rttrr_pin.reporting import interrupts; interrupts.install(); "
+        "signal.setitimer(signal.ITIMER_REAL, 0.05); signal.signal(signal.SIGALRM, signal.SIG_DFL); "
+        "interrupts.ignore(); time.sleep(0.15)"
+    )
+    assert subprocess.run([sys.executable, "-c", code]).returncode == 0

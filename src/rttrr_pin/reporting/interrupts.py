@@ -96,7 +96,8 @@ def install() -> Callable[[], None]:
 
 def ignore() -> None:
     """From here on the process ends by itself: a signal would only cut off its last breath."""
-    for number in ENDING:
+    signal.setitimer(signal.ITIMER_REAL, 0)  # of a signal that waits: Python's end would leave it to the system's rule
+    for number in (*ENDING, signal.SIGALRM):
         signal.signal(number, signal.SIG_IGN)
 
 
