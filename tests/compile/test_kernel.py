@@ -164,7 +164,7 @@ BAD_OUTPUTS: dict[str, tuple[Any, type[RttrrError], str]] = {
     "none": ((), InputError, "name at least one"),
     "twice": (("tau", "tau"), InputError, "each once"),
     "empty-name": ("", UnknownNameError, "no output is called ''"),
-    "number": ((3,), UnknownNameError, "no output is called 3"),
+    "number": ((3,), InputError, "pass a name, or several"),
 }
 
 

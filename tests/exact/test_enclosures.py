@@ -418,7 +418,7 @@ def test_numbers_that_are_none_are_refused(rttrr: Robot, bad: float, which: int)
 def test_bad_arguments_are_refused(rttrr: Robot) -> None:
     with pytest.raises(ShapeError, match="expected 5"):
         rttrr.enclose(np.zeros(4), np.zeros(5), np.zeros(5))
-    with pytest.raises(InputError, match="parameters is 'decimals': expected one of 'doubles', 'read', 'text'"):
+    with pytest.raises(InputError, match="parameters is 'decimals': expected 'doubles' or 'read' or 'text'"):
         rttrr.enclose(np.zeros(5), np.zeros(5), np.zeros(5), parameters="decimals")  # type: ignore[arg-type]
 
 

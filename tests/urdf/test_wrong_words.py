@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -71,14 +72,14 @@ def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
         else:
             (tmp_path / name).write_bytes(content)
     (tmp_path / "shut.urdf").write_text(URDF)
-    opened = Path.open
+    opened = os.open
 
-    def may_open(path: Path, *words: object, **options: object) -> object:  # root may read everything
-        if path.name == "shut.urdf":
+    def may_open(path: str | Path, *words: Any, **options: Any) -> int:  # root may read everything
+        if Path(path).name == "shut.urdf":
             raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
-        return opened(path, *words, **options)  # type: ignore[call-overload]
+        return opened(path, *words, **options)
 
-    monkeypatch.setattr(Path, "open", may_open)
+    monkeypatch.setattr(os, "open", may_open)
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

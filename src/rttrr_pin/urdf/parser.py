@@ -30,7 +30,7 @@ from rttrr_pin.urdf.tree import check_mimics, check_tree
 from rttrr_pin.urdf.unused import check_asked, transmissions_of
 from rttrr_pin.urdf.vocabulary import ATTRIBUTES, check_words, not_modelled
 
-LONGEST_NAME = 1000
+LONGEST_NAME = 10_000
 """Characters."""
 
 SUPPORTED = tuple(JOINT_TYPES)
@@ -107,7 +107,7 @@ def _short(element: Element) -> str:
     """The name of an element, of a length that can be shown."""
     name = element.text("name")
     if len(name) > LONGEST_NAME:
-        message = f"a name has {len(name):,} characters, expected {LONGEST_NAME} at most: give it a shorter one"
+        message = f"a name has {len(name):,} characters, expected {LONGEST_NAME:,} at most: give it a shorter one"
         raise UrdfError(message, source=element.log.source, line=element.line)
     return name
 
