@@ -245,6 +245,7 @@ def test_what_comes_from_disk_is_the_same(rttrr: Robot, monkeypatch: pytest.Monk
     assert len(list((cache.folder() or Path()).glob("*.kernel"))) == 2
 
 
+@pytest.mark.slow
 def test_a_block_that_is_too_large_for_the_stack_is_allocated() -> None:
     """One block of 600 joints takes a megabyte, the stack of a thread may be smaller."""
     robot = chain(600)

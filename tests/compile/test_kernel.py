@@ -134,6 +134,7 @@ def test_a_list_of_one_name_gives_a_dict_in_every_call(rttrr: Robot) -> None:
         assert listed(state, state, state)["tau"].shape == state.shape
 
 
+@pytest.mark.slow
 def test_all_outputs_at_once_in_the_order_asked_for(rttrr: Robot) -> None:
     names = tuple(reversed(QUANTITIES))
     state = some((70,))

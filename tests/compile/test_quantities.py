@@ -95,6 +95,7 @@ def test_mass_matrix_is_symmetric_to_the_last_bit_and_positive_definite(case: st
         assert (least > -ROUNDING * most).all()
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("case", ROBOTS)
 def test_nonlinear_effects_and_gravity_are_pinocchios(case: str) -> None:
     _, drawn, ours = made(case)

@@ -181,6 +181,7 @@ def test_a_locked_robot_is_exactly_the_whole_one_at_rest_there(seed: int, mode: 
         assert (np.where(tight, np.nextafter(enclosure.lower, np.inf) >= lower, True)).all()
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_the_kernels_bounds_hold_for_locked_joints(seed: int, mode: Any) -> None:
@@ -198,6 +199,7 @@ def test_the_kernels_bounds_hold_for_locked_joints(seed: int, mode: Any) -> None
             assert (value - bound <= own.upper).all()
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("reference", ["pinocchio", "mujoco", "lagrange", "recursion"])
 @pytest.mark.parametrize("seed", [1, 2])
 def test_other_programs_read_locked_robots(reference: str, seed: int) -> None:
@@ -217,6 +219,7 @@ def posed(seed: int, others: bool = False) -> tuple[Robot, Robot, dict[str, Any]
     return robot, robot.with_locked(locked), locked
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("others", [False, True])
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_locked_base_is_a_fixed_one_at_that_pose(seed: int, others: bool) -> None:
@@ -264,6 +267,7 @@ def test_a_locked_base_is_as_exact_as_its_doubles(mode: Any) -> None:
     assert (np.abs(bounds["n"] - exact.n.lower) <= bounds["n_bound"] + (exact.n.upper - exact.n.lower)).all()
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("reference", ["pinocchio", "mujoco", "lagrange", "recursion"])
 def test_other_programs_read_a_locked_base(reference: str) -> None:
     robot = rttrr_pin.load(random_chain(3, ("revolute", "prismatic", "continuous")), base="floating")

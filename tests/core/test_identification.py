@@ -90,6 +90,7 @@ def reduced(rows: list[list[Fraction]]) -> tuple[list[int], list[list[Fraction]]
     return pivots, rows[: len(pivots)]
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("name", ["rttrr", "trr"])
 def test_basis_and_map_are_the_exact_ones(name: str) -> None:
     robot = rttrr_pin.load(name)
@@ -236,6 +237,7 @@ def test_effects_do_not_move_the_inertial_basis(rttrr: Robot) -> None:
     assert driven_too.base_parameters().independent == rttrr.base_parameters().independent
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("scale", [1e-30, 1e-6, 1e6, 1e30])
 @pytest.mark.parametrize("name", ["rttrr", "tree_2"])
 def test_a_robot_of_any_size_has_the_same_basis(name: str, scale: float) -> None:

@@ -171,6 +171,7 @@ def test_regrouped_inertia_drives_the_same_forces(joint_type: JointType, seed: i
     np.testing.assert_allclose(got, expected, rtol=0.0, atol=1e-11 * np.abs(expected).max())
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("joint_type", TYPES, ids=str)
 def test_every_program_takes_the_type(joint_type: JointType) -> None:
     """The laws of mechanics, the compiled kernel, bounds, Lagrange's equations and derivatives, in a chain with it."""

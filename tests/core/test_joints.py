@@ -22,6 +22,7 @@ from support.trees import TREE_TYPES, random_tree
 SEEDS = range(12)
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("base", ["fixed", "floating"])
 @pytest.mark.parametrize("seed", SEEDS)
 def test_random_trees_agree_with_pinocchio(seed: int, base: Any) -> None:
@@ -117,6 +118,7 @@ def test_a_chain_whose_product_float64_does_not_hold_is_refused(lost: tuple[str,
     assert len(rttrr_pin.load(followers(*lost), mimic=False).joint_names) == len(lost) + 1
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("held", [("1e-60", "-1e60"), ("1e-200", "0", "1e-200"), ("1e-150", "1e-150"), ("-1e-300",)])
 def test_what_a_chain_multiplies_is_exact(held: tuple[str, ...]) -> None:
     """Between the products of the parts may lie anything; friction keeps its sign through rates of 1e-300."""
@@ -304,6 +306,7 @@ def test_a_sensor_beside_a_branch_carries_its_own_weight_alone() -> None:
     assert validate(robot, "recursion", n_states=50).passed
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 @pytest.mark.parametrize("multiplier", [1e-200, -1e-200, 1.5, 0.0])
 @pytest.mark.parametrize("name", ["recursion", "kernel", "lagrange", "pinocchio", "mujoco"])

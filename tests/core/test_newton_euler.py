@@ -38,12 +38,14 @@ def states(robot: Robot, seed: int, count: int = 50) -> tuple[np.ndarray, np.nda
     return drawn.q, drawn.v, drawn.a
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("sampling", SAMPLINGS)
 def test_agrees_with_pinocchio_on_every_family_of_states(robot: Robot, sampling: str, seed: int) -> None:
     assert validate(robot, "recursion", n_states=64, seed=seed, sampling=sampling).passed
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("seed", SEEDS)
 @pytest.mark.parametrize("expressed_in", ["link", "base"])
 def test_agrees_with_pinocchio_with_a_payload_at_every_link(robot: Robot, expressed_in: str, seed: int) -> None:

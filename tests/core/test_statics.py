@@ -27,6 +27,7 @@ def drawn(robot: Robot) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     return states.q, states.v, states.a
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("base", ["fixed", "floating"])
 @pytest.mark.parametrize("seed", range(3))
 def test_jacobians_and_placements_are_pinocchios(seed: int, base: Any) -> None:

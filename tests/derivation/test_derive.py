@@ -55,6 +55,7 @@ from support.tolerances import ROUNDING, norm_error
 from support.trees import random_tree
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("case", slow_but(FAST, CASES), ids=IDS)
 def test_python_gives_what_pinocchio_gives(case: tuple[str, str, str]) -> None:
     module: dict[str, Any] = {}
@@ -103,6 +104,7 @@ def values(name: str, derivation: symbolic.Derivation) -> dict[str, np.ndarray |
 READ = [(case, "latex") for case in CASES] + [(case, "markdown") for case in CASES[:4]]
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize(
     "read",
     slow_but([(case, language) for case in FAST for language in ("latex", "markdown")], READ),

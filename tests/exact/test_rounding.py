@@ -25,6 +25,7 @@ from support.tolerances import ROUNDING
 from support.trees import random_tree
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("base", ["fixed", "floating"])
 def test_no_true_error_exceeds_its_bound_in_trees(seed: int, base: Any) -> None:

@@ -34,6 +34,7 @@ def worst_ratio(robot: Robot, n_states: int = 200, **options: Any) -> float:
     return worst.of_tolerance.value
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("sampling", ["uniform", "mixed", "large-velocities"])
 @pytest.mark.parametrize("base", ["fixed", "floating"])
 @pytest.mark.parametrize("name", ["rttrr", "trr", "trtr", "trtrr", "trttr"])
@@ -182,6 +183,7 @@ def test_an_error_of_1e_10_in_one_number_is_seen(
     assert validate(Robot(other), "recursion", "mujoco", 200).passed == no_effect
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("base", ["fixed", "floating"])
 def test_an_error_of_1e_10_in_one_mass_of_a_tree_is_seen(base: Any, monkeypatch: pytest.MonkeyPatch) -> None:
     model = rttrr_pin.load(random_tree(9, 20), base=base).model

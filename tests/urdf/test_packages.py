@@ -118,7 +118,12 @@ NAMESPACE = 'xmlns:xacro="http://www.ros.org/wiki/xacro"'
 IN_VAIN = {
     "packages": (
         '<xacro:include filename="$(find one_in_vain)/a.xacro"/><xacro:include filename="$(find two_in_vain)/b.xacro"/>',
-        ("'one_in_vain' or 'two_in_vain'", "package.xml", "ROS_PACKAGE_PATH", "--package one_in_vain=FOLDER --package two_in_vain=FOLDER"),
+        (
+            "'one_in_vain' or 'two_in_vain'",
+            "package.xml",
+            "ROS_PACKAGE_PATH",
+            "--package one_in_vain=FOLDER --package two_in_vain=FOLDER",
+        ),
     ),
     "arguments": (
         '<xacro:arg name="set" default="1"/><link name="$(arg side)"/><link name="$(arg dof)_$(arg set)_$(arg given)"/>',

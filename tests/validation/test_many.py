@@ -55,6 +55,7 @@ def test_errors_that_inspect_finds_are_counted(
     assert str(wanted["worse.urdf"]) in [cell.strip() for cell in row][-3:-1]
 
 
+@pytest.mark.slow
 def test_the_outcome_does_not_depend_on_the_workers(folder: Path) -> None:
     sources = {path.stem: path for path in sorted(folder.glob("*.urdf"))}
     outcomes = [

@@ -48,6 +48,7 @@ def test_no_worst_error_is_beyond_500_eps(robot: Robot) -> None:
     assert max(row.relative.value for row in result.rows) * EPS <= ROUNDING
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("quantity", QUANTITIES)
 @pytest.mark.parametrize("size", [1e-9, 1.0, np.nan, np.inf])
 @pytest.mark.parametrize("side", ["subject", "reference"])
@@ -180,6 +181,7 @@ CASES = [(signs, subject) for signs in SIGNS for subject in ("recursion", "kerne
 """Pinocchio cannot build what moves with less than nothing."""
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize(("masses", "subject"), CASES, ids=str)
 def test_an_allowance_is_a_sum_of_sizes_whatever_the_signs_of_masses(
     masses: tuple[float, float, float, str], subject: str
