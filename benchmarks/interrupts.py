@@ -4,8 +4,8 @@ Each try starts a command that writes all files that it can, sends a signal afte
 command takes, to the process or to its whole group as a terminal does, and looks at what is left: the exit code is that
 of the signal (or the command's own, where it had ended before), each file is whole or absent, what the last sentence
 says of them is true, and no process is left. A signal in the first tenths of a second, before Python runs the program's
-first line, ends the process by the system's own rule, or by Python's: while it imports `site` and what `.pth` files of
-installed packages name, it ends with exit code 1 and a fatal error of its own.
+first line, ends the process by the system's own rule, or by Python's: while it sets up its streams and imports `site`
+and what `.pth` files of installed packages name, it ends with exit code 1 and a fatal error of its own.
 
 Run: python benchmarks/interrupts.py [--tries N] [--seed S] [--save]. Exit 1 if a try fails.
 """
@@ -48,7 +48,7 @@ COMMANDS: dict[str, list[str]] = {
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
-OF_PYTHON = "Fatal Python error: init_import_site"
+OF_PYTHON = "Fatal Python error: init_"
 """What Python says where it is interrupted before it runs any program."""
 
 PATIENCE = 20.0
