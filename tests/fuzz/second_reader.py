@@ -100,7 +100,7 @@ def whole(element: Any) -> bool:
             got.remove(other)
     there = ATTRIBUTES[element.tag] & got
     more = {other for other in got - there if not any(other in name for name in there)}  # yz, where iyz is there
-    return not more or (element.tag in ("origin", "axis") and ATTRIBUTES[element.tag] <= got)
+    return not more or (element.tag in ("origin", "axis", "parent", "child") and ATTRIBUTES[element.tag] <= got)
 
 
 def local(element: Any) -> str:

@@ -67,3 +67,11 @@ def test_true_values_lie_within_the_allowance(implementation: Implementation, ro
         error = result.values[key] - true
         size = np.abs(error) if key == "tau" else np.linalg.norm(error, axis=-1)
         assert (size <= allowance[key]).all(), key
+
+
+@pytest.mark.parametrize("name", names())
+def test_a_robot_of_one_link_that_stands_still_has_nothing_to_give(name: str) -> None:
+    model = load('<robot name="stone"><link name="a"/></robot>').model
+    result = make_implementation(name, model).evaluate(Batch(model, *np.zeros((3, 2, 0))))
+    for key, values in result.values.items():
+        assert values.shape == ((2, 0) if key == "tau" else (2, 0, 3)), key

@@ -65,6 +65,12 @@ def pin_joints(model: Model, pin_model: Any) -> list[library.LibraryJoint]:
     return library.library_joints(model, slices)
 
 
+COLUMNS: tuple[tuple[type, tuple[int, ...]], ...] = (
+    (bool, ()), (np.int64, ()), (float, (3, 3)), (float, (3,)), (float, ()), (float, (3,)), (float, (3, 3)),
+)  # fmt: skip
+"""Of each field of `PinLinks` the type, and the shape for one link; a robot of one link that stands still has none."""
+
+
 def pin_links(model: Model, pin_model: Any) -> PinLinks:
     """The links of the file with Pinocchio's placements and inertias.
 
@@ -86,7 +92,8 @@ def pin_links(model: Model, pin_model: Any) -> PinLinks:
             mass, com, tensor = inertia.mass, inertia.lever, inertia.inertia
         M = frame.placement
         links.append((fixed, frame.parentJoint, M.rotation, M.translation, mass, com, tensor))
-    return PinLinks(*map(np.array, zip(*links, strict=True)))
+    columns = zip(*links, strict=True) if links else [()] * len(COLUMNS)
+    return PinLinks(*(np.array(x, kind).reshape(-1, *shape) for x, (kind, shape) in zip(columns, COLUMNS, strict=True)))
 
 
 def _frames(pin_model: Any) -> dict[tuple[Any, str], Any]:
