@@ -4,7 +4,8 @@ Run: python benchmarks/kernel_start.py [--repeats N] [--save]. Each figure is of
 
 - import: `import rttrr_pin`, which loads NumPy only when something is asked of it, and `import numpy`;
 - compile: the first `kernel(q, v, a)` with an empty cache folder, everything that it imports included;
-- cached: the same with the cache filled by the process before.
+- cached: the same with the cache filled by the process before;
+- commands: `rttrr-pin` from start to end, the cache filled, less `import numpy, pinocchio`; in turns.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import statistics
 import subprocess
 import sys
 import tempfile
+import time
 from typing import Any
 
 from common import arguments, finish
@@ -57,6 +59,25 @@ def first_calls(robot: str, repeats: int) -> dict[str, Any]:
     return {"robot": robot, "compile_s": statistics.median(compiled), "cached_s": statistics.median(cached)}
 
 
+COMMANDS = {"validate": ("validate", "--states", "10"), "inspect": ("inspect", "rttrr")}
+
+
+def commands(repeats: int) -> dict[str, float]:
+    """Seconds of the commands beyond the imports, which no command with Pinocchio can be without."""
+    words = {"imports": ["-c", "import numpy, pinocchio"]}
+    words |= {name: ["-m", "rttrr_pin", *own] for name, own in COMMANDS.items()}
+    times: dict[str, list[float]] = {name: [] for name in words}
+    for _ in range(repeats + 1):  # the first fills the cache
+        for name, own in words.items():
+            start = time.perf_counter()
+            subprocess.run([sys.executable, *own], capture_output=True, check=True)
+            times[name].append(time.perf_counter() - start)
+    medians = {name: statistics.median(own[1:]) for name, own in times.items()}
+    return {"imports_s": medians["imports"]} | {
+        f"{name}_beyond_s": medians[name] - medians["imports"] for name in COMMANDS
+    }
+
+
 def main() -> None:
     parser = arguments(__doc__ or "")
     parser.add_argument("--repeats", type=int, default=5)
@@ -69,6 +90,7 @@ def main() -> None:
         "repeats": options.repeats,
         "import_numpy_s": medians["numpy"],
         "import_rttrr_pin_s": medians["rttrr_pin"],
+        "commands": commands(4 * options.repeats),
         "first_calls": [first_calls(robot, options.repeats) for robot in ROBOTS],
     }
     finish("kernel_start", figures, options.save)

@@ -9,20 +9,12 @@ from typing import TYPE_CHECKING, Any, Literal, cast, overload
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rttrr_pin.core.arguments import choice, names_of, not_negative
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import common_shape
 from rttrr_pin.core.dynamics import bodies
 from rttrr_pin.core.inertia import SpatialInertia
-from rttrr_pin.core.inputs import (
-    Coordinates,
-    choice,
-    coordinates,
-    finite,
-    names_of,
-    not_negative,
-    real,
-    vectors,
-)
+from rttrr_pin.core.inputs import Coordinates, coordinates, finite, real, vectors
 from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.payload import Payloads, load_of, loads_of, payload_link

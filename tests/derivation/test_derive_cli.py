@@ -82,25 +82,6 @@ def test_formulas_are_printed_where_they_fit_the_screen(
             assert ring.reduced(value) == ring.polynomial(derivation.quantities["g"].terms[int(k) - 1,])
 
 
-UNUSABLE = {
-    "quantity": (["derive", "--quantity", "taus"], "no quantity is called 'taus': did you mean tau"),
-    "form": (["derive", "--form", "short"], "no form is called 'short': there are auto, expanded, stepwise"),
-    "payload": (["derive", "--payload-link", "hand"], "no link is called 'hand'"),
-    "twice": (["derive", "--latex", "-", "--c", "-"], "--latex and --c both go to stdout"),
-    "folder": (["derive", "--python", "no/such/folder/x.py"], "cannot be written"),
-    "robot": (["derive", "rttr"], "did you mean"),
-}
-
-
-@pytest.mark.parametrize("case", UNUSABLE)
-def test_unusable_input_exits_2_and_says_why(case: str, capsys: pytest.CaptureFixture[str]) -> None:
-    words, message = UNUSABLE[case]
-    assert main(words) == 2
-    out, err = capsys.readouterr()
-    assert message in err
-    assert "Traceback" not in err and out == ""
-
-
 def test_the_payload_is_that_of_robots_with_one_last_link() -> None:
     """Through the Robot, in base axes or link axes, with the wrench that its own function takes."""
     derivation = symbolic.derive(robot("rttrr"), ["tau"])

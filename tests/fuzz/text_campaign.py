@@ -15,7 +15,6 @@ import json
 import os
 import random
 import re
-import resource
 import sys
 import tempfile
 import time
@@ -29,7 +28,7 @@ from typing import TYPE_CHECKING, Any
 
 from .reader_cases import QUANTITIES, READERS, ROBOT, other_case, table
 from .text_cases import HOSTILE, SEEDS, text_case
-from .urdf_campaign import campaign
+from .urdf_campaign import campaign, peak_memory
 
 if TYPE_CHECKING:
     from rttrr_pin import Robot
@@ -46,11 +45,6 @@ def case(seed: int, index: int) -> tuple[str, bytes]:
     """How the file of a number is called at its end, and what is in it."""
     rng = random.Random(f"texts:{seed}:{index}")
     return other_case(rng) if rng.random() < OTHERS else text_case(rng)
-
-
-def megabytes() -> float:
-    """The most that this process ever took."""
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1024
 
 
 def _audited(path: Path) -> tuple[str, str]:
@@ -142,7 +136,7 @@ def check(ending: str, data: bytes, folder: Path) -> dict[str, Any]:
 
     path = folder / f"case{ending}"
     path.write_bytes(data)
-    before, started, failure = megabytes(), time.process_time(), ""
+    before, started, failure = peak_memory(), time.process_time(), ""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -154,7 +148,7 @@ def check(ending: str, data: bytes, folder: Path) -> dict[str, Any]:
         failure = "" if len(str(error)) < LONGEST else f"a message of {len(str(error))} characters"
     except (Exception, SystemExit) as error:
         kind, failure = "crashed", f"{type(error).__name__}: {str(error)[:200]}"
-    seconds, more = time.process_time() - started, megabytes() - before
+    seconds, more = time.process_time() - started, peak_memory() - before
     if seconds > SLOW or more > LARGE:
         failure = failure or f"took {seconds:.2f} s and {more:.0f} MB"
     return {"kind": f"{ending} {kind}", "seconds": seconds, "megabytes": more, "failure": failure}

@@ -137,8 +137,10 @@ ALLOWED = REQUIRED | {"testsuite": REQUIRED["testsuite"] | {"file"}}
 
 def test_junit_keeps_to_the_schemas(folder: Path) -> None:
     out = folder.parent / "found.xml"
-    main(["inspect", str(folder), "-q", "--junit", str(out), "--strict", "--fail-on", "Drake"])
-    for element in ElementTree.parse(out).getroot().iter():
+    assert main(["inspect", str(folder), "-q", "--junit", str(out), "--strict", "--fail-on", "Drake"]) == 1
+    elements = list(ElementTree.parse(out).getroot().iter())
+    assert {element.tag for element in elements} >= REQUIRED.keys()
+    for element in elements:
         if element.tag in REQUIRED:
             assert REQUIRED[element.tag] <= set(element.keys()) <= ALLOWED[element.tag]
 

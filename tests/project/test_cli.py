@@ -138,6 +138,12 @@ UNUSABLE = {
     "json-folder": (["validate", "--states", "5", "--json", "no/such/folder/x.json"], "cannot be written"),
     "no-command": ([], "Usage"),
     "no-such-command": (["valdate"], "No such command"),
+    "derive-quantity": (["derive", "--quantity", "taus"], "no quantity is called 'taus': did you mean tau"),
+    "derive-form": (["derive", "--form", "short"], "no form is called 'short': there are auto, expanded, stepwise"),
+    "derive-payload": (["derive", "--payload-link", "hand"], "no link is called 'hand'"),
+    "derive-twice": (["derive", "--latex", "-", "--c", "-"], "--latex and --c both go to stdout"),
+    "derive-folder": (["derive", "--python", "no/such/folder/x.py"], "cannot be written"),
+    "derive-robot": (["derive", "rttr"], "did you mean"),
 }
 
 

@@ -21,7 +21,7 @@ ROOT = Path(__file__).parents[2]
 WRONG: tuple[Any, ...] = (
     *(None, True, 0, 3, -1, 2.5, math.nan, math.inf, 10**400, 1j, np.int64(3), np.float32(2.5)),
     *("", "nonsense", "a\0b", "é\n\x1b[31m", "x" * 5000, b"bytes", object(), int, lambda: None, slice(1), ...),
-    *([], (), [1, 2], [[1], [1, 2]], [[]], {}, {"a": 1}, {1: 2}, {"joint_1": "x"}, {"joint_1": None}, {"a"}, iter("a")),
+    *([], (), [1, 2], [[1], [1, 2]], [[]], {}, {"a": 1}, {1: 2}, {"joint_1": "x"}, {"joint_1": None}, {"a"}),
     *(np.zeros(0), np.zeros((2, 3)), np.array("a"), np.array(None), np.full(5, np.nan), np.full((7, 5), 0.5)),
 )
 """What somebody may pass by mistake."""
@@ -69,6 +69,7 @@ def calls() -> dict[str, Call]:
         "BaseParameters.of": (base.of, {"parameters": robot.inertial_parameters()}),
         "BaseParameters.regressor": (base.regressor, {"Y": Y}),
         "BaseParameters.condition": (base.condition, {"Y": Y}),
+        "BaseParameters.advice": (base.advice, {"Y": np.repeat(Y[None], 20, axis=0), "most": 1000.0}),
         "jacobian": (robot.jacobian, {"q": whole["q"], **AT}),
         "wrench_torque": (robot.wrench_torque, {"q": whole["q"], "wrench": Wrench((1, 2, 3)), "point": (0, 0, 0)}),
         "WrenchEstimate": (robot.wrench_from_torque, {"q": whole["q"], "tau": whole["v"], **AT, "tolerance": 1e-9}),
@@ -134,7 +135,13 @@ NAMES = (
     *("LinkWrenches", "Wrench", "RandomPayload", "JointEffects", "Joint", "Limits", "Mimic", "Link", "Model"),
     *("validate", "compare_state", "search_worst_state", "check_laws", "inspect", "derive", "read_publication"),
     "audit",
-    *("BaseParameters.of", "BaseParameters.regressor", "BaseParameters.condition", "Kernel of several"),
+    *(
+        "BaseParameters.of",
+        "BaseParameters.regressor",
+        "BaseParameters.condition",
+        "BaseParameters.advice",
+        "Kernel of several",
+    ),
     *("a coordinate of with_locked", "parts of Joint"),
 )
 """The names of `calls`."""
@@ -154,7 +161,7 @@ def test_a_wrong_argument_is_an_error_of_ours(name: str) -> None:
     function(**right)
     others = []
     for argument in right:
-        for value in WRONG:
+        for value in (*WRONG, iter("a")):
             try:
                 function(**{**right, argument: value})
             except RttrrError:

@@ -12,11 +12,11 @@ import pinocchio as pin
 import rttrr_pin
 from rttrr_pin import Robot
 from rttrr_pin import derivation as symbolic
-from rttrr_pin.core.joints import CONTINUOUS, PLANAR
 from rttrr_pin.core.payload import Load
 from rttrr_pin.derivation.writers import WRITERS
 from rttrr_pin.validation import Sampler
 from support.implementations import evaluated
+from support.pinocchio_states import pin_model, pin_q
 from support.serial_chains import EXAMPLES, random_chain
 from support.tolerances import ROUNDING, norm_error
 from support.trees import random_tree
@@ -106,28 +106,15 @@ def pinocchios(name: str) -> dict[str, np.ndarray]:
 
 
 def _by_its_own_functions(name: str) -> dict[str, np.ndarray]:
-    model = robot(name).model
-    root = (pin.JointModelFreeFlyer(),) if ROBOTS[name][1] == "floating" else ()
-    theirs = pin.buildModelFromXML(model.urdf, *root)
+    theirs = pin_model(robot(name))
     data, (at, _) = theirs.createData(), drawn(name)
     M, g, Cv = [], [], []
-    for q, v in zip(_their_coordinates(name, at.q), at.v, strict=True):
+    for q, v in zip([pin_q(robot(name), q) for q in at.q], at.v, strict=True):
         upper = np.triu(pin.crba(theirs, data, q))
         M.append(upper + np.triu(upper, 1).T)
         g.append(pin.computeGeneralizedGravity(theirs, data, q).copy())
         Cv.append(pin.computeCoriolisMatrix(theirs, data, q, v) @ v)
     return {"M": np.array(M), "g": np.array(g), "Cv": np.array(Cv)}
-
-
-def _their_coordinates(name: str, q: np.ndarray) -> np.ndarray:
-    """Angles of planar and continuous joints as cosine and sine."""
-    columns, rest = [], list(q.T)
-    for joint in robot(name).model.moving:
-        own, rest = rest[: joint.nq], rest[joint.nq :]
-        if joint.type in (CONTINUOUS, PLANAR):
-            own = [*own[:-1], np.cos(own[-1]), np.sin(own[-1])]
-        columns += own
-    return np.stack(columns, axis=1)
 
 
 def assert_pinocchios(name: str, ours: dict[str, np.ndarray]) -> None:

@@ -9,7 +9,7 @@ from os import PathLike
 from pathlib import Path
 
 from rttrr_pin.auditing.publication import DEFINITION, Convention, Equation, Publication
-from rttrr_pin.core.inputs import path_of
+from rttrr_pin.core.arguments import path_of
 from rttrr_pin.core.model import Model
 from rttrr_pin.derivation.symbol_file import PUBLISHED, SYMBOL_KEYS, read_symbols, spell
 from rttrr_pin.derivation.symbolic_robot import Slot, SymbolicRobot, value_of_slot

@@ -16,7 +16,7 @@ from rttrr_pin.auditing.publication import Convention, Equation, Publication
 from rttrr_pin.auditing.quotients import as_quotient, compare
 from rttrr_pin.auditing.read import read
 from rttrr_pin.auditing.results import AuditResult, ComponentAudit, ConventionCheck, Finding, Verdict
-from rttrr_pin.core.inputs import whole_number
+from rttrr_pin.core.arguments import whole_number
 from rttrr_pin.errors import InputError
 
 

@@ -18,10 +18,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rttrr_pin.core.arguments import not_negative, relative_tolerance
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.inputs import finite, real, relative_tolerance
+from rttrr_pin.core.inputs import finite, real
 from rttrr_pin.core.model import Model
-from rttrr_pin.errors import ShapeError
+from rttrr_pin.errors import NumberError, ShapeError
 
 INERTIAL = ("m", "m c_x", "m c_y", "m c_z", "I_xx", "I_xy", "I_yy", "I_xz", "I_yz", "I_zz")
 """The ten parameters of a link, the tensor about the origin of {i}, in the order of the regressor."""
@@ -125,7 +126,12 @@ class BaseParameters:
         Args:
             Y: `Robot.regressor(q, v, a)` along the trajectory, (..., nv, parameters).
             most: singular values of less than the largest divided by it are told.
+
+        Raises:
+            NumberError: `most` is no number from 1 on.
         """
+        if not_negative("most", most) < 1.0:
+            raise NumberError(f"most is {most}: expected a number from 1 on", name="most", value=most)
         W = self.regressor(Y).reshape(-1, self.rank)
         norms = np.linalg.norm(W, axis=0)
         shown, names = np.flatnonzero(norms), [self.names[k] for k in self.independent]

@@ -8,8 +8,9 @@ from numbers import Real
 
 import numpy as np
 
+from rttrr_pin.core.arguments import whole_number
 from rttrr_pin.core.arrays import Array, Rebuilt
-from rttrr_pin.core.inputs import real, whole_number
+from rttrr_pin.core.inputs import real
 from rttrr_pin.core.joints.base import JointType
 from rttrr_pin.errors import InputError, shortened
 

@@ -9,8 +9,8 @@ from typing import TypeAlias
 import numpy as np
 
 from rttrr_pin.core.algebra import Vector
+from rttrr_pin.core.arguments import not_negative
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.inputs import not_negative
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.newton_euler import Payload
 from rttrr_pin.core.scalars import Arithmetic, columns

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rttrr_pin.core.arguments import relative_tolerance
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.inputs import relative_tolerance
 
 
 @dataclass(frozen=True, slots=True, eq=False)

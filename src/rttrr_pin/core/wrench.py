@@ -9,8 +9,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rttrr_pin.core.arguments import choice
 from rttrr_pin.core.arrays import Array, Rebuilt
-from rttrr_pin.core.inputs import choice, vectors
+from rttrr_pin.core.inputs import vectors
 from rttrr_pin.errors import ShapeError, UnknownNameError
 
 LINK_QUANTITIES = ("F", "N", "f", "n")

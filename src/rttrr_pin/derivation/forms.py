@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import chain, product
 from typing import TYPE_CHECKING, Any
 
-from rttrr_pin.core.inputs import names_of, whole_number
+from rttrr_pin.core.arguments import names_of, whole_number
 from rttrr_pin.core.model import Model
 from rttrr_pin.derivation.closed_forms import TooLongError, closed_forms
 from rttrr_pin.derivation.quantities import DEFAULT, QUANTITIES, Extent, Index

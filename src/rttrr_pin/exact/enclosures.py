@@ -12,10 +12,10 @@ import numpy as np
 from flint import arb
 from numpy.typing import NDArray
 
+from rttrr_pin.core.arguments import choice
 from rttrr_pin.core.arrays import Array, norm
 from rttrr_pin.core.batch import batch_shape, check_overflow, flat, split_columns
 from rttrr_pin.core.dynamics import body_of
-from rttrr_pin.core.inputs import choice
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import QUANTITIES, LinkWrenches

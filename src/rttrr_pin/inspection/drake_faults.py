@@ -8,29 +8,23 @@ from math import inf, isfinite
 
 from rttrr_pin.inspection.parser_faults import not_one_root, shorter_axis, unreadable_numbers
 from rttrr_pin.inspection.rule import DRAKE, Behaviour, Places, Rule, faults, joints
+from rttrr_pin.inspection.structure import LIMITED
+from rttrr_pin.urdf.decimals import NUMBER
 from rttrr_pin.urdf.document import UrdfDocument
 from rttrr_pin.urdf.faults import Fault
 
-LEADING = re.compile(r"\s*([-+]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][-+]?[0-9]+)?)")
-"""A number that a stream of C++ takes from the start of a text."""
-
 
 def _read_by_streams(fault: Fault) -> bool:
-    """Whether the text of an attribute starts with as many numbers as there should be, whatever stands behind them."""
-    match = re.search(r'<\w+ (\w+)="([^"]*)">', fault.message)
-    if match is None:
-        return False
-    name, text, count = *match.groups(), 0
-    while (number := LEADING.match(text)) and isfinite(float(number[1])):
-        text, count = text[number.end() :], count + 1
-    return count == (3 if name in ("xyz", "rpy") else 1)
+    """Whether as many numbers as there should be, and no more, stand at the start of an attribute."""
+    text, count = fault.value.lstrip(), 0
+    while (number := NUMBER.match(text)) and isfinite(float(number[0])):
+        text, count = text[number.end() :].lstrip(), count + 1
+    return count == (3 if fault.attribute in ("xyz", "rpy") else 1)
 
 
 def _numbers(read: bool) -> Places:
     """Links and joints with a number that Drake reads in part, or refuses."""
-    return lambda document: dict.fromkeys(
-        fault.name for fault in unreadable_numbers(document) if _read_by_streams(fault) is read
-    )
+    return lambda document: (fault.name for fault in unreadable_numbers(document) if _read_by_streams(fault) is read)
 
 
 def _reversed(document: UrdfDocument) -> Iterator[str]:
@@ -46,7 +40,7 @@ def _open(document: UrdfDocument) -> Iterator[str]:
     both = {"lower", "upper"}
     half = {fault.name for fault in document.faults if fault.kind == "range" and "exchange" not in fault.message}
     for joint in document.joints.values():
-        ranged = joint.limit is not None and joint.type in ("revolute", "prismatic")
+        ranged = joint.limit is not None and joint.type in LIMITED
         limited = joint.type == "continuous" and both & joint.limits.keys()
         if joint.name in half or limited or (ranged and not both <= joint.limits.keys()):
             yield joint.name
@@ -56,7 +50,7 @@ def _negative(document: UrdfDocument) -> Iterator[str]:
     """Joints with a negative limit of velocity, or, where an actuator drives them, of effort."""
     driven = {each.joint for each in document.transmissions if "SimpleTransmission" in each.type}
     for fault in document.faults:
-        if fault.kind == "limit" and (fault.message.startswith("velocity") or fault.name in driven):
+        if fault.kind == "limit" and (fault.attribute == "velocity" or fault.name in driven):
             yield fault.name
 
 
@@ -64,7 +58,7 @@ def _damped(document: UrdfDocument) -> Iterator[str]:
     """Joints that move, with negative damping."""
     for fault in document.faults:
         joint = document.joints.get(fault.name)
-        negative = fault.kind == "dynamics" and fault.message.startswith("damping")
+        negative = fault.kind == "dynamics" and fault.attribute == "damping"
         if negative and joint is not None and joint.moves and joint.type != "floating":
             yield fault.name
 

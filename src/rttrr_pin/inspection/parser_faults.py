@@ -68,16 +68,14 @@ def _text_behind(document: UrdfDocument) -> Iterator[str]:
 
 def _inertials(*elements: tuple[str, str]) -> Places:
     """Links with faults of such kinds in such elements."""
-    return lambda document: dict.fromkeys(
+    return lambda document: (
         fault.name for fault in document.faults if fault.tag == "link" and (fault.kind, fault.element) in elements
     )
 
 
 def _in_elements(element: str, holds: Callable[[Fault], object]) -> Places:
     """Links and joints with such faults in such an element."""
-    return lambda document: dict.fromkeys(
-        fault.name for fault in document.faults if fault.element == element and holds(fault)
-    )
+    return lambda document: (fault.name for fault in document.faults if fault.element == element and holds(fault))
 
 
 def _missing_moment(document: UrdfDocument) -> Iterator[str]:
@@ -89,9 +87,9 @@ def _missing_moment(document: UrdfDocument) -> Iterator[str]:
 
 
 def unreadable_numbers(document: UrdfDocument) -> Iterator[Fault]:
-    """Numbers that cannot be read."""
+    """Numbers that cannot be read, but of quat_xyzw, which only a reader of URDF 1.1 looks at."""
     numbers = (fault for fault in document.faults if fault.kind == "number" or fault.element == "mass" == fault.kind)
-    return (fault for fault in numbers if not fault.missing)
+    return (fault for fault in numbers if not fault.missing and fault.attribute != "quat_xyzw")
 
 
 def _unreadable(document: UrdfDocument) -> Iterator[str]:
@@ -185,7 +183,7 @@ FAULT_RULES = (
          "yourdfpy: urdf.py, URDF._parse_axis and URDF._parse_limit",
          faults("unused", lambda fault: not fault.missing and not any(key in fault.message for key in LIMITS_1_2))),
     Rule("urdfdom-asked", URDFDOM, Behaviour.REFUSE,
-         "<dynamics>, <calibration> or <safety_controller> lacks a number",
+         "<limit>, <dynamics>, <calibration> or <safety_controller> lacks a number",
          "urdfdom: urdf_parser/src/joint.cpp, parseJoint", faults("asked")),
     Rule("material", (*URDFDOM, DRAKE), Behaviour.REFUSE,
          "two materials of the robot have one name",

@@ -168,7 +168,7 @@ RULES = (
 
 def verdicts(document: UrdfDocument) -> tuple[Verdict, ...]:
     """What each parser does with a file."""
-    names = {rule: tuple(rule.places(document)) for rule in RULES}
+    names = {rule: tuple(dict.fromkeys(rule.places(document))) for rule in RULES}
 
     def verdict(parser: str) -> Verdict:
         own = [rule for rule in RULES if parser in rule.parsers and names[rule]]

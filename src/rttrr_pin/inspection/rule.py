@@ -118,7 +118,7 @@ def inertials(holds: Callable[[UrdfInertial], object], moving: bool = False) -> 
 
 def faults(kind: str, holds: Callable[[Fault], object] = lambda fault: True) -> Places:
     """The links or joints with such a fault, or the robot."""
-    return lambda document: dict.fromkeys(
+    return lambda document: (
         fault.name or document.name for fault in document.faults if fault.kind == kind and holds(fault)
     )
 

@@ -12,8 +12,8 @@ from xml.parsers import expat
 
 import numpy as np
 
+from rttrr_pin.core.arguments import names_of, path_of
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.inputs import names_of, path_of
 from rttrr_pin.errors import InputError, UnknownNameError
 from rttrr_pin.inspection import physics, plausibility, report, structure
 from rttrr_pin.inspection.bodies import LinkRow, centre_of_mass, tree

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from rttrr_pin.core.arguments import names_of
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.inputs import names_of
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load, RandomPayload
 from rttrr_pin.errors import InputError, UnknownNameError

@@ -7,7 +7,7 @@ from collections import Counter
 from functools import cache
 from pathlib import Path
 
-from rttrr_pin.core.inputs import path_of
+from rttrr_pin.core.arguments import path_of
 from rttrr_pin.errors import InputError, UnknownNameError, UrdfError, shortened
 from rttrr_pin.urdf import xacro
 

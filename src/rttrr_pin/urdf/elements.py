@@ -61,13 +61,15 @@ class Element:
         """Its line in the file."""
         return int(self.xml.sourceline or 0)
 
-    def fault(self, kind: str, level: Level, message: str, assumed: str = "") -> None:
-        """Log a fault at this element's line."""
-        self.log.faults.append(Fault(kind, level, self.tag, self.name, self.line, shown(self.xml), message, assumed))
+    def fault(self, kind: str, level: Level, message: str, assumed: str = "", attribute: str = "") -> None:
+        """Log a fault at this element's line, of one of its attributes or of another kind."""
+        where = (kind, level, self.tag, self.name, self.line, shown(self.xml))
+        value = self.xml.get(attribute, "") if attribute else ""
+        self.log.faults.append(Fault(*where, message, assumed, attribute, value))
 
-    def assume(self, kind: str, message: str, assumed: str) -> None:
+    def assume(self, kind: str, message: str, assumed: str, attribute: str = "") -> None:
         """Log what a number depends on, and what is read in its place: nothing for what xacro would write."""
-        self.fault(kind, Level.ERROR if UNEXPANDED in message else Level.ASSUMPTION, message, assumed)
+        self.fault(kind, Level.ERROR if UNEXPANDED in message else Level.ASSUMPTION, message, assumed, attribute)
 
     def error(self, kind: str, message: str, left_out: str) -> None:
         """Log what makes no robot, and what is left out."""
@@ -136,7 +138,7 @@ class Element:
         problem = self.problem(attribute, count, default)
         if not problem:
             return NumberList(self.xml.get(attribute, default))
-        self.assume("number", problem, f'<{self.xml.tag} {attribute}="{fallback}">')
+        self.assume("number", problem, f'<{self.xml.tag} {attribute}="{fallback}">', attribute)
         self.write(**{attribute: fallback})
         return NumberList(fallback)
 

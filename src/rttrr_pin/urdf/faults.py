@@ -57,7 +57,7 @@ KINDS = {
     "not-modelled": "No element carries mechanics that a tree of links and joints has not.",
     "transmission": "A transmission drives a joint that exists, by an actuator of its own.",
     "material": "The materials of the robot have names of their own.",
-    "asked": "<dynamics>, <calibration> and <safety_controller> hold the numbers that urdfdom asks for.",
+    "asked": "<limit>, <dynamics>, <calibration> and <safety_controller> hold the numbers that urdfdom asks for.",
 }
 """By kind, what holds for a file without such a fault."""
 
@@ -75,6 +75,8 @@ class Fault:
         element: the element, such as `"axis"`; empty where it is the text of the file.
         message: what is there, and the fix.
         assumed: what was read in its place; empty for a note.
+        attribute: of the element, where it is the value of one; empty where it is something else.
+        value: the text of that attribute.
     """
 
     kind: str
@@ -85,6 +87,8 @@ class Fault:
     element: str
     message: str
     assumed: str = ""
+    attribute: str = ""
+    value: str = ""
 
     @property
     def missing(self) -> bool:

@@ -13,14 +13,9 @@ UNLIMITED = "1e9"
 """What is written for a limit that the file does not set, and urdfdom asks for."""
 
 
-def has_direction(joint_type: JointType) -> bool:
-    """Whether the <axis> of such a joint counts for something, and so its limits do."""
-    return joint_type.has_axis or joint_type.axis_direction is not None
-
-
 def read_limit(joint: Element, joint_type: JointType, version: tuple[int, int]) -> dict[str, Number] | None:
     """Those limits that the file sets; of a joint that has no use for them they may be anything."""
-    used = has_direction(joint_type)
+    used = joint_type.has_direction
     limit = joint.child("limit", used)
     written = [key for key in ATTRIBUTES["limit"] if limit is not None and key in limit.xml.attrib]
     if joint.log.lenient:
@@ -35,7 +30,7 @@ def read_limit(joint: Element, joint_type: JointType, version: tuple[int, int]) 
     for key in ("velocity", "effort"):
         if key in numbers and float(numbers[key]) < 0.0:
             limit.assume(
-                "limit", f"{key} limit is {float(numbers[key])}: expected a positive number", f"no {key} limit"
+                "limit", f"{key} limit is {float(numbers[key])}: expected a positive number", f"no {key} limit", key
             )
             limit.write(**{key: UNLIMITED})
             del numbers[key]
@@ -58,7 +53,7 @@ def read_dynamics(joint: Element) -> dict[str, Number]:
             numbers[key] = dynamics.number(key)
             if float(numbers[key]) < 0.0:
                 message = f"{key} is {numbers[key].text}: expected a number that is not negative"
-                dynamics.assume("dynamics", message, f"{key} 0")
+                dynamics.assume("dynamics", message, f"{key} 0", key)
                 dynamics.write(**{key: "0"})
                 numbers[key] = Number("0")
     return numbers
@@ -79,10 +74,10 @@ def _complete_limit(joint: Element, limit: Element | None, joint_type: JointType
     if limit is None:
         if joint_type.limits == "required":
             message = f'a {joint_type.name} joint has no <limit>: write <limit lower="..." upper="..." .../>'
-            joint.assume("limit", message, "no limits")
+            joint.assume("asked", message, "no limits")
             joint.added("limit", lower=f"-{UNLIMITED}", upper=UNLIMITED, effort=UNLIMITED, velocity=UNLIMITED)
         return
     missing = [key for key in ("effort", "velocity") if key not in limit.xml.attrib]
     if missing and version < (1, 2):
-        limit.assume("limit", f"its <limit> has no {' and no '.join(missing)}", f"no {' and '.join(missing)} limit")
+        limit.assume("asked", f"its <limit> has no {' and no '.join(missing)}", f"no {' and '.join(missing)} limit")
         limit.write(**dict.fromkeys(missing, UNLIMITED))

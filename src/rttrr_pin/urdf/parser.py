@@ -24,7 +24,7 @@ from rttrr_pin.urdf.document import UrdfDocument, UrdfJoint, UrdfLink, UrdfMimic
 from rttrr_pin.urdf.elements import Element, parse_xml
 from rttrr_pin.urdf.faults import Log
 from rttrr_pin.urdf.inertial import ENTRIES, Placement, UrdfInertial
-from rttrr_pin.urdf.limits import has_direction, read_dynamics, read_limit
+from rttrr_pin.urdf.limits import read_dynamics, read_limit
 from rttrr_pin.urdf.sources import AS_IT_STANDS, AnySource, Reading, find
 from rttrr_pin.urdf.tree import check_mimics, check_tree
 from rttrr_pin.urdf.unused import check_asked, transmissions_of
@@ -161,7 +161,7 @@ def _inertial(inertial: Element, version: tuple[int, int]) -> UrdfInertial | Non
     if mass is None or problem:
         at = mass or inertial
         fix = ': write <mass value="..."/> in kg' if mass is None else ""
-        at.assume("mass", problem + fix, "no <inertial>: a link without mass")
+        at.assume("mass", problem + fix, "no <inertial>: a link without mass", "" if mass is None else "value")
         inertial.remove()
         return None
     if tensor is None:
@@ -248,8 +248,8 @@ def _joint(name: str, joint: Element, version: tuple[int, int]) -> UrdfJoint | N
 
 def _axis(joint: Element, joint_type: JointType) -> NumberList:
     """The axis of a joint that has one; 1 0 0 where the file does not say, or +z for a planar joint."""
-    axis = joint.child("axis", used=has_direction(joint_type))
-    if not has_direction(joint_type):
+    axis = joint.child("axis", used=joint_type.has_direction)
+    if not joint_type.has_direction:
         if axis is not None and (problem := axis.problem("xyz", 3)):
             axis.note("unused", problem)
         return NumberList("1 0 0")

@@ -110,7 +110,7 @@ def _joint(joint: UrdfJoint, parent: int, mimic: Mimic | None) -> Joint:
     """A joint on the link of index `parent`."""
     joint_type = JOINT_TYPES[joint.type]
     axis = np.array(joint.axis.floats)
-    if joint_type.has_axis or joint_type.axis_direction:
+    if joint_type.has_direction:
         axis = np.ldexp(axis, -np.frexp(np.abs(axis).max())[1])  # exact, and the squares can no more overflow
         axis = axis / np.linalg.norm(axis)
     effects = JointEffects(damping=float(joint.damping), friction=float(joint.friction))  # URDF has no armature

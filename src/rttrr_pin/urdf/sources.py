@@ -207,7 +207,7 @@ def _find_path(path: Path, reading: Reading) -> Source:
     if (reading.xacro or reading.xacro_args) and xacro.is_xacro(path, file.text):
         text = xacro.expanded(path, reading.xacro_args, reading.packages)
         return Source(f"{path} (as xacro expands it)", text, file.folder)
-    if path.suffix == xacro.SUFFIX:
+    if xacro.has_suffix(path):
         raise xacro.refusal(path)
     return file
 

@@ -67,7 +67,7 @@ def _joint(robot: ET.Element, model: Model, joint: Joint, child: str) -> None:
     ET.SubElement(element, "parent", link=(model.root if joint.parent < 0 else model.links[joint.parent]).name)
     ET.SubElement(element, "child", link=child)
     ET.SubElement(element, "origin", xyz=written(joint.p), rpy=written(angles_of(joint.R)))
-    if joint.type.has_axis or joint.type.axis_direction:
+    if joint.type.has_direction:
         ET.SubElement(element, "axis", xyz=written(joint.axis))
     if limits:
         ET.SubElement(element, "limit", {key: written([value]) for key, value in limits.items()})

@@ -37,7 +37,12 @@ class PackageNotFoundError(LookupError):
 
 def is_xacro(path: Path, text: bytes) -> bool:
     """Whether a file is to be expanded before it is a URDF, if that is asked for."""
-    return path.suffix == SUFFIX or NAMESPACE in text
+    return has_suffix(path) or NAMESPACE in text
+
+
+def has_suffix(path: Path) -> bool:
+    """Whether a file is xacro by its name, in capitals too."""
+    return path.suffix.lower() == SUFFIX
 
 
 def refusal(path: Path) -> UrdfError:

@@ -16,7 +16,7 @@ from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any, Literal, get_args
 
-from rttrr_pin.core.inputs import whole_number
+from rttrr_pin.core.arguments import whole_number
 from rttrr_pin.errors import LoadWarning, ModelMismatchError, RttrrError, UnknownNameError
 from rttrr_pin.implementations import names
 from rttrr_pin.loading import load

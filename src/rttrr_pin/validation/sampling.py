@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from rttrr_pin.core.arguments import whole_number
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.inputs import whole_number
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load, RandomPayload, load_of, payload_link

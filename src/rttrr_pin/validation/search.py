@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from scipy.optimize import differential_evolution
 
+from rttrr_pin.core.arguments import whole_number
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.inputs import whole_number
 from rttrr_pin.errors import InputError
 from rttrr_pin.implementations import Batch, label
 from rttrr_pin.implementations.registry import Source

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from rttrr_pin.core.inputs import whole_number
+from rttrr_pin.core.arguments import whole_number
 from rttrr_pin.exact import Adjudication
 from rttrr_pin.implementations import Batch, Evaluation, label
 from rttrr_pin.implementations.registry import Source

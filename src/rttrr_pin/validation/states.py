@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from rttrr_pin.core.arguments import whole_number
 from rttrr_pin.core.batch import blocks
-from rttrr_pin.core.inputs import whole_number
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load, RandomPayload
 from rttrr_pin.errors import InputError

@@ -177,6 +177,11 @@ class JointType(ABC):
         return ()
 
     @property
+    def has_direction(self) -> bool:
+        """Whether the <axis> of such a joint counts for something, and so its limits do."""
+        return self.has_axis or self.axis_direction is not None
+
+    @property
     def nq(self) -> int:
         """The number of coordinates."""
         return len(self.coordinates)
