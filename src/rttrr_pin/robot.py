@@ -15,7 +15,7 @@ from rttrr_pin.core.batch import common_shape
 from rttrr_pin.core.dynamics import bodies
 from rttrr_pin.core.inertia import SpatialInertia
 from rttrr_pin.core.inputs import Coordinates, coordinates, finite, real, vectors
-from rttrr_pin.core.joint import JointEffects
+from rttrr_pin.core.joint import EFFECTS, JointEffects
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.payload import Payloads, load_of, loads_of, payload_link
 from rttrr_pin.core.scalars import FLOAT
@@ -214,7 +214,7 @@ class Robot:
             parameters += [link.m, *link.h, x.x, x.y, y.y, x.z, y.z, z.z]
         if joint_effects:
             moving = (joint.effects for joint in self.model.joints if joint.nv)
-            parameters += [x for own in moving for x in (own.armature, own.damping, own.friction)]
+            parameters += [getattr(own, name) for own in moving for name in EFFECTS]
         return np.array(parameters, dtype=np.float64)
 
     def base_parameters(self, joint_effects: bool = False, tolerance: float = 1e-9) -> BaseParameters:
@@ -339,8 +339,6 @@ class Robot:
             UnknownNameError: no joint that moves is called so.
             NumberError: a number is not finite, or is negative.
         """
-        from rttrr_pin.core.identification import EFFECTS
-
         moving = [joint.name for joint in self.model.joints if joint.nv]
         if not isinstance(effects, Mapping):
             raise InputError(f"effects is a {type(effects).__name__}: pass a dict from joint name to JointEffects(...)")

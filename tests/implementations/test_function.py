@@ -197,3 +197,15 @@ def test_an_implementation_of_the_users_says_what_it_promises(says: Callable[[],
 
     with pytest.raises(ImplementationError, match=f"own {message}"):
         validate(pendulum(), Own(), "recursion", n_states=3)
+
+
+def test_a_function_that_changes_its_precision_is_judged_as_when_it_was_tried() -> None:
+    robot = rttrr_pin.load("rttrr")
+    kernel = robot.compile("tau")
+
+    def sometimes(q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
+        tau = kernel(q, v, a)
+        return tau.astype(np.float32) if len(q) == 50 else tau
+
+    report = validate(robot, sometimes, "kernel", n_states=50)
+    assert not report.passed and Function(sometimes, robot.model).type == np.float64

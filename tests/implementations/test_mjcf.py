@@ -35,6 +35,11 @@ HOSTILE = {
         '<asset><hfield name="h" nrow="100000" ncol="100000" size="1 1 1 1"/></asset>',
         "10,000,000,000 cells",
     ),
+    "more digits than Python reads": (
+        f'<asset><hfield name="h" nrow="{"9" * 5000}" ncol="2" size="1 1 1 1"/></asset>',
+        "cells, expected",
+    ),
+    "a ladder": ('<include file="step0.xml"/><include file="step0.xml"/>', "MuJoCo refuses the file"),
     "names": (f'<worldbody><body name="{"y" * 100_000}"><joint/><geom size="1"/></body></worldbody>', "100,000 char"),
 }
 
@@ -46,6 +51,9 @@ def test_a_hostile_file_is_refused(case: str, tmp_path: Path, monkeypatch: pytes
     text, message = HOSTILE[case]
     (tmp_path / "deep").mkdir()
     (tmp_path / "many.xml").write_text(f"<mujocoinclude>{replicated(100)[11:-12]}</mujocoinclude>")
+    for k in range(40):  # each includes the next one twice
+        twice = 2 * f'<include file="step{k + 1}.xml"/>' if k < 39 else ""
+        (tmp_path / f"step{k}.xml").write_text(f"<mujocoinclude>{twice}</mujocoinclude>")
     for pipe in ("pipe", "deep/pipe"):
         os.mkfifo(tmp_path / pipe)
     (tmp_path / "arm.xml").write_text(f"<mujoco>{text}</mujoco>")

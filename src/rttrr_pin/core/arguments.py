@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Set
 from pathlib import Path
 from typing import Any
 
@@ -54,13 +54,13 @@ def relative_tolerance(value: Any) -> float:
 
 
 def names_of(argument: str, values: str | Iterable[str]) -> tuple[str, ...]:
-    """One name, or several.
+    """One name, or several in an order.
 
     Raises:
         InputError: it is something else.
     """
     several = (values,) if isinstance(values, str) else values
-    if isinstance(several, Iterable) and not isinstance(several, Mapping | bytes | np.ndarray):
+    if isinstance(several, Iterable) and not isinstance(several, Mapping | Set | bytes | np.ndarray):
         several = tuple(several)
         if all(isinstance(name, str) for name in several):
             return several

@@ -21,14 +21,12 @@ from numpy.typing import ArrayLike
 from rttrr_pin.core.arguments import not_negative, relative_tolerance
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.inputs import finite, real
+from rttrr_pin.core.joint import EFFECTS
 from rttrr_pin.core.model import Model
 from rttrr_pin.errors import NumberError, ShapeError
 
 INERTIAL = ("m", "m c_x", "m c_y", "m c_z", "I_xx", "I_xy", "I_yy", "I_xz", "I_yz", "I_zz")
 """The ten parameters of a link, the tensor about the origin of {i}, in the order of the regressor."""
-
-EFFECTS = ("armature", "damping", "friction")
-"""The three of a joint."""
 
 KINDS = {"m": "mass"} | dict.fromkeys(INERTIAL[1:4], "first moment") | dict.fromkeys(INERTIAL[4:], "tensor")
 """Parameters whose columns can be compared: what of one rounds can be as large as another is. Those of a joint's

@@ -66,6 +66,10 @@ class JointEffects:
     friction: float = 0.0
 
 
+EFFECTS = tuple(own.name for own in fields(JointEffects))
+"""The names of its parameters."""
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class Lock:
     """What a joint is that stands still because it is locked.

@@ -48,21 +48,23 @@ class Function:
         self.function = function
         self.model = model
         self.quantities: tuple[str, ...] = ()
-        self.type = np.dtype(np.float64)
         trial = Batch(model, *trial_states(model, TRIED))
         outcomes: list[Mapping[str, Array] | RttrrError] = []
+        types = []
         for self.takes_batches in (False, True):
+            self.type = np.dtype(np.float64)
             try:
                 outcomes.append(self.evaluate(trial).values)
             except RttrrError as error:
                 outcomes.append(error)
+            types.append(self.type)
         alone, together = outcomes
         if isinstance(together, RttrrError) and isinstance(alone, RttrrError):
             raise alone
         self.takes_batches = not isinstance(together, RttrrError) and (
             isinstance(alone, RttrrError) or _same(together, alone)
         )
-        results = together if self.takes_batches else alone
+        results, self.type = (together if self.takes_batches else alone), types[self.takes_batches]
         assert not isinstance(results, RttrrError)
         self.quantities = tuple(key for key in QUANTITIES if key in results)
         self.notes = (f"{self.name} is judged as {self.type}, which it returns",) if self.type != np.float64 else ()
@@ -116,7 +118,8 @@ class Function:
         except (TypeError, ValueError):
             kind = x.dtype.name if isinstance(x, np.ndarray) else type(x).__name__
             raise ImplementationError(f"{self.name} returned {key} as {kind}, expected real numbers") from None
-        if own.dtype.kind == "f" and own.dtype.itemsize < self.type.itemsize:
+        trying = not self.quantities  # later states are judged as it was said
+        if trying and own.dtype.kind == "f" and own.dtype.itemsize < self.type.itemsize:
             self.type = own.dtype
         if array.squeeze().shape != tuple(n for n in wanted if n != 1):  # axes of length 1 may be there or not
             raise ShapeError(

@@ -71,7 +71,7 @@ Convert = Callable[[LibraryJoint, Array, Array, Array], tuple[Array, Array, Arra
 
 
 def library_joints(model: Model, slices: Callable[[Joint, Link], tuple[slice, slice]]) -> list[LibraryJoint]:
-    """The moving joints, in our order; `place` says where a library has q and v of the joint that carries a link."""
+    """The moving joints, in our order; `slices` says where a library has q and v of the joint that carries a link."""
     pairs = zip(model.joints, model.links, strict=True)
     return [LibraryJoint(joint, *slices(joint, link)) for joint, link in pairs if joint.nv]
 

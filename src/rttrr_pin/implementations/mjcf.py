@@ -14,6 +14,9 @@ from rttrr_pin.urdf.sources import LARGEST_FILE, Source, object_source
 MOST_COPIES = 10_000
 """Of a body; MuJoCo takes minutes and gigabytes for more."""
 
+MANY = 10**12
+"""In place of any larger number."""
+
 GRID, MOST_CELLS = ("nrow", "ncol", "width", "height"), 10**8
 """The sides of fields of heights and of textures, and the cells that memory has room for."""
 
@@ -42,11 +45,19 @@ def mjcf_source(path: Path) -> Source:
     return object_source(compiled, mujoco, "mujoco.MjModel", source)
 
 
-def _check(path: Path, folder: Path, source: str, copies: int = 1, including: tuple[Path, ...] = ()) -> None:
+def _count(word: str) -> int:
+    """A whole number of any length, or what is large enough in its place; 1 for what is none."""
+    return min(int(word.lstrip("0")[:20] or "0"), MANY) if word.isascii() and word.isdigit() else 1
+
+
+def _check(path: Path, folder: Path, source: str, copies: int = 1, checked: dict[Path, int] | None = None) -> None:
     """Of a file that MuJoCo will read and those that it includes and names: they end, and make no crowd of bodies.
 
-    What is no XML, or not there, MuJoCo says itself.
+    A file that many include is looked at again only where more copies are made of it. What is no XML, or not there,
+    MuJoCo says itself.
     """
+    checked = {} if checked is None else checked
+    checked[path] = copies
     try:
         root = etree.fromstring(read_limited(path, LARGEST_FILE), etree.XMLParser(resolve_entities=False))
     except etree.XMLSyntaxError:
@@ -56,11 +67,11 @@ def _check(path: Path, folder: Path, source: str, copies: int = 1, including: tu
     places = {word for tag in root.iter("compiler") for word in tag.attrib.values()}  # meshdir and the like
     for element in root.iter("*"):
         counts = [above.get("count", "") for above in element.iterancestors("replicate")]
-        all_copies = copies * prod(int(count) for count in counts if count.isdecimal())
+        all_copies = copies * prod(map(_count, counts))
         if all_copies > MOST_COPIES:
             message = f"<replicate> makes {all_copies:,} copies, expected {MOST_COPIES:,} at most"
             raise UrdfError(message, source=source, line=element.sourceline)
-        cells = prod(int(word) for key in GRID if (word := element.get(key, "")).isdecimal())
+        cells = prod(_count(element.get(key, "")) for key in GRID)
         if cells > MOST_CELLS:
             message = f"<{element.tag}> has {cells:,} cells, expected {MOST_CELLS:,} at most"
             raise UrdfError(message, source=source, line=element.sourceline)
@@ -69,5 +80,5 @@ def _check(path: Path, folder: Path, source: str, copies: int = 1, including: tu
             note_read(file)
             if file.exists() and not file.is_file():
                 raise UrdfError(f"names {file}, which is no file", source=source, line=element.sourceline)
-            if element.tag == "include" and file.is_file() and file not in including:
-                _check(file, folder, source, all_copies, (*including, file))
+            if element.tag == "include" and file.is_file() and checked.get(file, 0) < all_copies:
+                _check(file, folder, source, all_copies, checked)

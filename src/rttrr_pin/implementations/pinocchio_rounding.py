@@ -1,4 +1,4 @@
-"""What rounds in Pinocchio's formulas, and does not occur in ours."""
+"""What rounds in Pinocchio's formulas, and does not occur in the recursion's."""
 
 from __future__ import annotations
 
@@ -20,12 +20,13 @@ OPERATIONS = 4
 def rounding(
     pin_model: Any, links: PinLinks, apart: Mapping[int, Scales], spatial: Array, reach: Array
 ) -> dict[str, Array]:
-    """What rounds in Pinocchio's formulas and does not occur in ours: sizes times `OPERATIONS` eps, (N, links) each.
+    """What rounds in Pinocchio's formulas and not in the recursion's: sizes times `OPERATIONS` eps, (N, links) each.
 
     - Spatial accelerations and momenta about the joint's origin O contain terms that cancel in the result: w x v_O in
       `a_gf`, v_O x m v_O and m |c|^2 (|w_dot| + |w|^2) in the moment.
     - Rotations about an axis that is not x, y or z itself, -z for one, come from 1 - cos q, so that even what lies
-      along the axis is rounded when it is carried over the joint. Ours carries it over exactly, and its bound knows.
+      along the axis is rounded when it is carried over the joint. The recursion carries it over exactly, and its bound
+      knows.
     - Inertias of links fixed together were merged when the model was built, and are `apart` from the file's.
 
     Sizes add up like the terms: outwards for velocities and accelerations, inwards for forces and moments. `reach` is
