@@ -137,6 +137,95 @@ def test_a_table_has_its_own_states_alone(tmp_path: Path) -> None:
         table.evaluate(Batch(whole.model, whole.q[:10] + 1, whole.v[:10], whole.a[:10]))
 
 
+def loaded(folder: Path, form: str = "%.17g", state: str = "%.17g", error: float = 0.0) -> Path:
+    """A table of the arm, two of whose links exert forces; its writer knew all digits."""
+    robot = rttrr_pin.load("rttrr")
+    rng = np.random.default_rng(8)
+    q, v, a = rng.uniform(-1, 1, (3, 30, 5))
+    wrenches = [Wrench(*rng.uniform(-20, 20, (2, 30, 3)), link=link) for link in ("link_3", "tool")]
+    tau = robot.inverse_dynamics(q, v, a, wrenches).tau + error
+    names = column_names(robot.model)
+    header, columns = names["q"] + names["v"] + names["a"] + names["tau"], [q, v, a, tau]
+    for wrench in wrenches:
+        header += [f"payload_{key}_{wrench.link}_{axis}" for key in "fn" for axis in "xyz"]
+        columns += [np.asarray(wrench.force), np.asarray(wrench.moment)]
+    forms = [state] * 15 + [form] * 17
+    np.savetxt(folder / "x.csv", np.hstack(columns), forms, ",", header=",".join(header), comments="")  # type: ignore[arg-type]
+    return folder / "x.csv"
+
+
+@pytest.mark.parametrize("reference", ["recursion", "pinocchio", "lagrange", "kernel"])
+def test_a_payload_of_columns_is_another_in_each_row(tmp_path: Path, reference: str) -> None:
+    robot = rttrr_pin.load("rttrr")
+    right = validate(robot, loaded(tmp_path), reference)
+    assert right.passed and right.payload == "the table's, at link_3, tool"
+    assert not validate(robot, loaded(tmp_path, error=1e-9), reference).passed
+
+
+@pytest.mark.parametrize(("state", "form"), [("%.17g", "%.4f"), ("%.17g", "%.5g"), ("%.6g", "%.6g"), ("%.3f", "%.3f")])
+def test_the_digits_of_a_payload_count(tmp_path: Path, state: str, form: str) -> None:
+    robot = rttrr_pin.load("rttrr")
+    path = loaded(tmp_path, form, state)
+    assert validate(robot, path, "recursion").passed
+    if state == "%.17g":  # all of the difference comes from the digits of payload and results
+        table = Table(path, robot.model)
+        table._payloads = [(load, np.zeros_like(halves)) for load, halves in table._payloads]
+        assert not validate(robot, table, "recursion").passed
+    assert not validate(robot, loaded(tmp_path, form, state, error=0.1), "recursion").passed
+
+
+def test_one_row_of_a_table_with_payloads_is_that_of_the_run(tmp_path: Path) -> None:
+    robot = rttrr_pin.load("rttrr")
+    report = rttrr_pin.compare_state(robot, 7, loaded(tmp_path), "recursion")
+    assert report.passed
+    assert [load.f.shape for load in report.batch.loads] == [(1, 3), (1, 3)]
+
+
+def test_a_payload_that_is_zero_is_none(tmp_path: Path) -> None:
+    names = ",".join(f"payload_{key}_rod_{axis}" for key in "fn" for axis in "xyz")
+    path = written(tmp_path, HEADER.replace("\n", f",{names}\n") + "0,0,1,0.6,0,0,0,0,0,0\n")
+    assert Table(path, pendulum().model).states().loads == ()
+    assert validate(pendulum(), path, "recursion", payload=Wrench((0, 0, 0))).passed
+
+
+@pytest.mark.parametrize("payload", [Wrench((0, 0, 5)), RandomPayload()])
+def test_a_table_with_a_payload_takes_no_other(tmp_path: Path, payload: Wrench | RandomPayload) -> None:
+    with pytest.raises(InputError, match="x.csv has its own payload at link_3.*expected one of the two; pass none"):
+        validate(rttrr_pin.load("rttrr"), loaded(tmp_path), "recursion", payload=payload)
+
+
+def test_two_tables_have_the_same_payload(tmp_path: Path) -> None:
+    first = loaded(tmp_path).rename(tmp_path / "first.csv")
+    assert validate(rttrr_pin.load("rttrr"), first, loaded(tmp_path)).passed
+    text = first.read_text().splitlines()
+    first.write_text("\n".join([text[0], text[1].rpartition(",")[0] + ",1", *text[2:]]))
+    with pytest.raises(InputError, match="have different payloads"):
+        validate(rttrr_pin.load("rttrr"), first, loaded(tmp_path))
+
+
+def test_results_with_a_payload_are_those_of_no_other(tmp_path: Path) -> None:
+    table = Table(loaded(tmp_path), rttrr_pin.load("rttrr").model)
+    whole = table.states()
+    with pytest.raises(ImplementationError, match="no others"):
+        table.evaluate(Batch(whole.model, whole.q, whole.v, whole.a))
+
+
+@pytest.mark.parametrize("axes", ["link", "base"])
+def test_json_lines_have_the_payload_of_their_requests(tmp_path: Path, axes: str) -> None:
+    """A request beside its reply: what a program was asked, and what it said."""
+    robot = rttrr_pin.load("rttrr")
+    rng = np.random.default_rng(9)
+    lines = []
+    for q, v, a, f, n in zip(*rng.uniform(-1, 1, (3, 10, 5)), *rng.uniform(-1, 1, (2, 10, 3)), strict=True):
+        wrench = Wrench(f, n, link="tool", expressed_in=axes)  # type: ignore[arg-type]
+        entry = {"payload": [{"link": "tool", "f": f.tolist(), "n": n.tolist(), "axes": axes}]}
+        state = {"q": q.tolist(), "v": v.tolist(), "a": a.tolist()}
+        lines.append(json.dumps(state | entry | {"tau": robot.inverse_dynamics(q, v, a, wrench).tau.tolist()}))
+    path = written(tmp_path, "\n".join(lines), "x.jsonl")
+    assert validate(robot, path, "recursion").passed
+    assert [load.in_base for load in Table(path, robot.model).states().loads] == [axes == "base"]
+
+
 class FakeParquet:
     """Stands for pyarrow's table: columns with names and NumPy types."""
 
@@ -183,6 +272,13 @@ DAMAGED = {
     "no-rates": ("q_pivot,a_pivot,tau_pivot\n0,0,0\n", "lacks the columns v_pivot"),
     "no-result": ("q_pivot,v_pivot,a_pivot\n0,0,0\n", "has no column of results: add tau_pivot"),
     "half-a-vector": ("q_pivot,v_pivot,a_pivot,F_rod_x\n0,0,0,0\n", "lacks the columns F_rod_y, F_rod_z"),
+    "half-a-payload": (HEADER.replace("\n", ",payload_f_rod_x\n") + "0,0,0,0,0\n", "lacks the columns payload_f_rod_y"),
+    "payload-at-no-link": (HEADER.replace("\n", ",payload_f_rode_x\n") + "0,0,0,0,0\n", "did you mean payload_f_rod_x"),
+    "payload-nan": (
+        HEADER.replace("\n", "".join(f",payload_{key}_rod_{axis}" for key in "fn" for axis in "xyz") + "\n")
+        + "0,0,0,0,0,0,0,0,nan,0\n",
+        "payload_n_rod_y[0] is nan",
+    ),
     "joint": (HEADER.replace("tau_pivot", "tau_pivto") + "0,0,0,0\n", "did you mean tau_pivot"),
     "infinite-state": (HEADER + "0,0,0,0\n0,inf,0,0\n", "v[1, 0], joint 'pivot', is inf"),
     "many-times": (",".join(["q_pivot"] * 200_000) + "\n", "has the column 'q_pivot' 200000 times"),
@@ -222,6 +318,16 @@ def test_exponents_of_any_length_are_numbers(tmp_path: Path, sign: str, exponent
         ('{"q": null, "v": 0, "a": 0, "tau": 0}', "is nan"),
         ("[1, 2]", "lacks the columns"),
         ('{}\n{"q": 0, "v": 0, "a": 0, "tau": 0}', "lacks the columns"),
+        ('{"q": 0, "v": 0, "a": 0, "tau": 0, "payload": 5}', "line 1, payload has '5': expected an object"),
+        ('{"q": 0, "v": 0, "a": 0, "payload": [{"link": "rode", "f": [0, 0, 0], "n": [0, 0, 0]}]}', "did you mean rod"),
+        (
+            '{"q": 0, "v": 0, "a": 0, "payload": [{"link": "rod", "f": [0, 0], "n": [0, 0, 0]}]}',
+            "line 1, payload, f at rod has 2 numbers, expected 3",
+        ),
+        (
+            '{"q": 0, "v": 0, "a": 0, "payload": [{"link": "rod", "f": [0, 0, 1], "n": [0, 0, 0], "axes": "world"}]}',
+            "expected 'link' or 'base'",
+        ),
         (f'{{"q": 0, "v": 0, "a": 0, "tau": {"[" * 900}0{"]" * 900}}}', "lists in each other, more than 8 deep"),
     ],
 )

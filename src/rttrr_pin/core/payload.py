@@ -40,6 +40,14 @@ class Load:
         return Load(self.link, f, n, self.in_base)
 
 
+def same_loads(own: Sequence[Load], other: Sequence[Load]) -> bool:
+    """Whether payloads are the same, bit by bit and in the same order."""
+    return len(own) == len(other) and all(
+        (x.link, x.in_base) == (y.link, y.in_base) and np.array_equal(x.f, y.f) and np.array_equal(x.n, y.n)
+        for x, y in zip(own, other, strict=True)
+    )
+
+
 Payloads: TypeAlias = Wrench | Load | Sequence[Wrench | Load] | None
 """What is passed as payload: none, one or several, with the link's name or its index."""
 

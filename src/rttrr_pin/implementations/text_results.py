@@ -29,6 +29,15 @@ FARTHEST = 400
 DEEPEST = 8
 """Lists in each other; a number for each coordinate of each joint has two."""
 
+PAYLOAD = "payload"
+"""How the columns of a payload begin, and its key in a request."""
+
+BASE_AXES = " in base axes"
+"""What stands behind the name of a payload's column where a request has it in base axes; no file need write it."""
+
+TIMES = ("time", "t")
+"""Columns of the time of a log."""
+
 Columns: TypeAlias = Mapping[str, Sequence[str]]
 """By joint or link the names of its numbers in one array."""
 
@@ -107,6 +116,15 @@ def column_names(model: Model) -> dict[str, list[str]]:
     return {key: [name for names in columns.values() for name in names] for key, columns in columns_of(model).items()}
 
 
+def payload_columns(model: Model) -> dict[tuple[str, bool], list[str]]:
+    """By link, and whether in base axes, the columns of a payload: `payload_f_tool_x`, ..., `payload_n_tool_z`."""
+    return {
+        (link, in_base): [f"{PAYLOAD}_{key}_{link}_{axis}{BASE_AXES * in_base}" for key in "fn" for axis in "xyz"]
+        for link in model.link_names
+        for in_base in (False, True)
+    }
+
+
 def number(text: str) -> float:
     """A decimal number, NaN or infinity.
 
@@ -149,6 +167,32 @@ def flattened(value: object, columns: Columns, where: str) -> list[str]:
     if missing:
         raise ImplementationError(f"{where} lacks {', '.join(missing)}: write one entry for each")
     return [text for name, own in columns.items() for text in _counted(value[name], len(own), f"{where} of {name}")]
+
+
+def flattened_payload(value: object, model: Model, where: str) -> dict[str, str]:
+    """By column the texts of the payload of a request: a list of objects with link, f, n, and axes ("link" or "base").
+
+    Raises:
+        ImplementationError: an entry is no such object, has too few or too many numbers, or a link has two.
+        UnknownNameError: a link that the robot has not.
+    """
+    row: dict[str, str] = {}
+    columns = payload_columns(model)
+    for entry in value if isinstance(value, list) else [] if value is None else [value]:
+        if not isinstance(entry, Mapping) or not {"link", "f", "n"} <= entry.keys() <= {"link", "f", "n", "axes"}:
+            shown = shortened(repr(entry))
+            raise ImplementationError(f"{where} has {shown}: expected an object with link, f, n and, if it likes, axes")
+        link, axes = entry["link"], entry.get("axes", "link")
+        if link not in model.link_names:
+            raise UnknownNameError("link", link, model.link_names, f"in {where}")
+        if axes not in ("link", "base"):
+            raise ImplementationError(f"{where} has axes {shortened(repr(axes))}: expected 'link' or 'base'")
+        names = columns[link, axes == "base"]
+        if names[0] in row:
+            raise ImplementationError(f"{where} has {link} twice: add both up")
+        for key, own in (("f", names[:3]), ("n", names[3:])):
+            row |= zip(own, _counted(entry[key], 3, f"{where}, {key} at {link}"), strict=True)
+    return row
 
 
 def quantities_of(reply: object, who: str) -> dict[str, object]:

@@ -24,7 +24,7 @@ from rttrr_pin.reporting.results import Summarised, finite
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.compare import Worst, ratio
 from rttrr_pin.validation.sampling import Payload, Sampler
-from rttrr_pin.validation.states import Progress, States, check_count, described, model_of
+from rttrr_pin.validation.states import Progress, States, check_count, model_of
 
 LAWS = tuple(law for module in (balance, matrix, symmetry) for law in vars(module).values() if isinstance(law, Law))
 """In the order of their ids."""
@@ -183,7 +183,7 @@ def check_laws(
         n_states=states.count(n_states),
         sampling=states.sampling,
         seed=states.sampler.seed,
-        payload=described(payload),
+        payload=states.described(payload),
         rows=rows,
         seconds=time.perf_counter() - start,
         notes=tuple(note.text for note in model.notes),

@@ -70,8 +70,8 @@ class Run:
                     f"{', '.join(other.quantities)}: there is nothing to compare"
                     f"{'' if model.nv else ', since no joint moves'}"
                 )
-        _check_inertia(model, sampler)
         states = States(sampler, programs, compiled=any(program.name == "kernel" for program in programs))
+        _check_inertia(model, states)
         return cls(states, programs, tuple(comparisons))
 
     @property
@@ -178,11 +178,12 @@ def true_parameters(model: Model) -> Parameters:
     return "read"
 
 
-def _check_inertia(model: Model, sampler: Sampler) -> None:
+def _check_inertia(model: Model, states: States) -> None:
     """What is certain to give zeros that equal zeros is said before anything is computed."""
     inertial = any(link.mass or link.inertia.any() for link in model.links)
     resisted = any(joint.effects != JointEffects() for joint in model.joints)
-    if not (inertial or resisted or sampler.payload is not None):
+    loaded = states.sampler.payload is not None or (states.table is not None and bool(states.table.loads))
+    if not (inertial or resisted or loaded):
         root = " but its root, which stands still," if model.root.mass or model.root.inertia.any() else ""
         raise InputError(f"no link of robot {model.name!r}{root} has mass: nothing was compared")
 

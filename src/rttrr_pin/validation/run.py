@@ -19,7 +19,7 @@ from rttrr_pin.robot import Robot
 from rttrr_pin.validation.compare import Comparison, Row, Worst, farthest_of
 from rttrr_pin.validation.comparison import References, Run
 from rttrr_pin.validation.sampling import Payload
-from rttrr_pin.validation.states import Progress, check_count, described
+from rttrr_pin.validation.states import Progress, check_count
 from rttrr_pin.version import __version__
 
 TOLERANCE = "|subject - reference| <= allowance of the subject + allowance of the reference (docs/tolerance.md)"
@@ -190,7 +190,7 @@ def validate(
         n_states=run.states.count(n_states),
         sampling=run.states.sampling,
         seed=run.states.sampler.seed,
-        payload=described(payload),
+        payload=run.states.described(payload),
         notes=run.notes,
         seconds=time.perf_counter() - start,
         versions=versions(run.programs),

@@ -11,7 +11,7 @@ import numpy as np
 from rttrr_pin.core.arguments import whole_number
 from rttrr_pin.core.batch import blocks
 from rttrr_pin.core.model import Model
-from rttrr_pin.core.payload import Load, RandomPayload
+from rttrr_pin.core.payload import Load, RandomPayload, same_loads
 from rttrr_pin.errors import InputError
 from rttrr_pin.implementations import Batch, Implementation
 from rttrr_pin.robot import Robot
@@ -45,6 +45,12 @@ class States:
         self.table = _table_of(programs, sampler.payload)
         self.sampling = sampler.sampling if self.table is None else "table"
 
+    def described(self, payload: Payload) -> str:
+        """The payload as reports name it: what was passed, or that of the table."""
+        own = () if payload is not None or self.table is None else self.table.loads
+        names = dict.fromkeys(self.sampler.model.link_names[load.link] for load in own)
+        return f"the table's, at {', '.join(names)}" if names else described(payload)
+
     def count(self, n_states: int) -> int:
         """How many states a run has that would draw so many."""
         return n_states if self.table is None else len(self.table)
@@ -55,7 +61,8 @@ class States:
             return replace(self.sampler.draw(first, count), compiled=self.compiled)
         part = slice(first, first + count)
         q, v, a = (getattr(self.table, name)[part] for name in "qva")
-        return Batch(self.sampler.model, q, v, a, self.table.loads, first, self.compiled)
+        loads = tuple(load.block(part) for load in self.table.loads)
+        return Batch(self.sampler.model, q, v, a, loads, first, self.compiled)
 
     def blocks(self, n_states: int, progress: Progress | None) -> Iterator[Batch]:
         """All states, some at a time; progress is called with the number done after each."""
@@ -74,9 +81,25 @@ def _table_of(programs: Sequence[Implementation], payload: Load | RandomPayload 
     for other, batch in others:
         if not all(np.array_equal(getattr(table, x), getattr(batch, x)) for x in "qva"):
             raise InputError(f"{name} and {other} are of different states: compare them one by one")
+        if not same_loads(table.loads, batch.loads):
+            raise InputError(f"{name} and {other} have different payloads: compare them one by one")
+    if table.loads:
+        _check_no_other(name, table, payload)
+        return table
     if isinstance(payload, RandomPayload):
         raise InputError(f"{name} has its own states, and no random payload: pass the wrench it was made with, or none")
     return replace(table, loads=() if payload is None else (payload,))
+
+
+def _check_no_other(name: str, table: Batch, payload: Load | RandomPayload | None) -> None:
+    """A table with a payload of its own takes no other."""
+    if payload is not None:
+        link = table.model.link_names[table.loads[0].link]
+        other = "a random payload" if isinstance(payload, RandomPayload) else "a payload"
+        raise InputError(
+            f"{name} has its own payload at {link}, in columns such as payload_f_{link}_x, and {other} is passed too: "
+            "expected one of the two; pass none, or take the columns out"
+        )
 
 
 def described(payload: Payload) -> str:
