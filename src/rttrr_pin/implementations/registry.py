@@ -81,7 +81,8 @@ def make_implementation(source: Source, model: Model) -> Implementation:
     for point in _registered():
         if point.name == text:
             return _of_package(point, model)
-    from rttrr_pin.implementations.table import READERS, Table
+    from rttrr_pin.implementations.table import Table
+    from rttrr_pin.implementations.table_files import READERS
 
     if Path(text).suffix.lower() in READERS and (Path(text).is_file() or not _is_command(text)):
         return Table(Path(text), model)

@@ -115,7 +115,7 @@ class Table:
         here = kernel(batch.q, batch.v, batch.a, payload=list(batch.loads) or None)
         total = {key: np.zeros(x.shape if key == "tau" else x.shape[:-1]) for key, x in here.items()}
         for state, loads in self._moved(batch, part):
-            for name, x in kernel(**state, payload=loads or None).items():
+            for name, x in kernel(state["q"], state["v"], state["a"], payload=loads or None).items():
                 total[name] += np.abs(x - here[name]) if name == "tau" else norm(x - here[name])
         return total
 
