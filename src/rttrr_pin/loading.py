@@ -10,6 +10,7 @@ from typing import Literal
 
 from numpy.typing import ArrayLike
 
+from rttrr_pin.core.arguments import choice
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.inputs import vectors
 from rttrr_pin.core.joints import FLOATING
@@ -72,8 +73,7 @@ def load(
     """
     from rttrr_pin.urdf.reader import read_urdf  # loads lxml, which a robot made from numbers does not need
 
-    if not isinstance(base, str) or base not in ("fixed", "floating"):
-        raise InputError(f"base is {base!r}: expected 'fixed' (bolted down) or 'floating'", {"base": "--base"})
+    choice("base", base, "fixed", "floating", option="--base")
     field = None if gravity is None else _field(gravity)
     file = mjcf_path(source)
     if file is not None:

@@ -450,6 +450,15 @@ def test_a_folder_in_doubt_is_not_written_either(folder: Path) -> None:
     assert not list(folder.iterdir())
 
 
+@pytest.mark.parametrize(("mode", "refused"), [(0o707, True), (0o770, True), (0o1777, False), (0o755, False)])
+def test_a_folder_that_others_may_exchange_is_refused(folder: Path, mode: int, refused: bool) -> None:
+    folder.mkdir(parents=True)
+    folder.parent.chmod(mode)
+    messages = warned(compile_two)
+    assert bool(messages) is refused and all(f"other users may write {folder.parent}" in each for each in messages)
+    assert bool(list(folder.iterdir())) is not refused
+
+
 def test_folder_and_entries_are_for_the_user_alone(folder: Path) -> None:
     before = os.umask(0)
     try:

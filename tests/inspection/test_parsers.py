@@ -273,6 +273,13 @@ def test_drake_reads_numbers_and_ranges_as_our_rules_say(name: str) -> None:
     assert theirs is ours or ours is Behaviour.ALTER
 
 
+def test_a_comment_names_no_version() -> None:
+    text = URDF.replace("<robot ", '<!-- <robot version="1.0"> --><robot ')
+    assert look(text).verdict("Drake").behaviour is look(URDF).verdict("Drake").behaviour is not Behaviour.WARN
+    named = text.replace('<robot name="two">', '<robot name="two" version="1.0">')
+    assert look(named).verdict("Drake").behaviour is Behaviour.WARN
+
+
 blanks = st.lists(st.sampled_from(["", " ", "\t", "\n", "\r\n", "  ", " \t", "\n "]), min_size=4, max_size=4)
 
 

@@ -175,9 +175,7 @@ def test_disagreement_exits_1(capsys: pytest.CaptureFixture[str], monkeypatch: p
 def test_another_model_than_the_file_exits_1(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(
-        "rttrr_pin.implementations.pinocchio.differences", lambda ours, theirs: ["link 'link_2' mass: 0"]
-    )
+    monkeypatch.setattr("rttrr_pin.implementations.pinocchio.differences", lambda assembly: ["link 'link_2' mass: 0"])
     assert main(["validate", "--states", "20"]) == 1
     assert "link 'link_2' mass" in capsys.readouterr().err
 

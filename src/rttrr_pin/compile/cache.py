@@ -6,7 +6,7 @@ that processes that start at the same time find it whole or not at all, and it c
 damaged one is dropped. A folder that cannot be written costs a warning and nothing else.
 
 An entry is machine code that will run as the user. So the folder and the entry must belong to the user or to root, and
-nobody else may write them: a digest protects from accidents, not from a neighbour on the machine.
+nobody else may write them, or put another in their place: a digest protects from accidents, not from a neighbour.
 """
 
 from __future__ import annotations
@@ -89,7 +89,7 @@ def read(name: str) -> bytes | None:
         return None
     path = where / (name + SUFFIX)
     try:
-        _check_owner(where.stat())
+        _check_folder(where)
     except DoubtError as doubt:
         _warn_of_no_cache(str(where), str(doubt.strerror))
         return None
@@ -137,6 +137,19 @@ def _check_owner(status: os.stat_result) -> None:
         raise DoubtError(errno.EPERM, "other users may write it")
 
 
+def _check_folder(where: Path) -> None:
+    """Refuse a folder of another user's, and one that others may write or put another in the place of.
+
+    Raises:
+        DoubtError: it is so.
+    """
+    _check_owner(where.stat())
+    for parent in Path(os.path.realpath(where)).parents:
+        mode = parent.stat().st_mode
+        if mode & BY_OTHERS and not mode & stat.S_ISVTX:
+            raise DoubtError(errno.EPERM, f"other users may write {parent}")
+
+
 def _digest(name: str, data: bytes) -> bytes:
     """Of an entry under its name: one that was renamed is no entry."""
     return hashlib.sha256(name.encode() + b"\0" + data).digest()
@@ -149,8 +162,10 @@ def write(name: str, data: bytes) -> None:
         return
     partial = None
     try:
-        where.mkdir(mode=0o700, parents=True, exist_ok=True)
-        _check_owner(where.stat())
+        missing = [place for place in (where, *where.parents) if not place.exists()]
+        for place in reversed(missing):  # parents=True would give the outer ones another mode
+            place.mkdir(mode=0o700, exist_ok=True)
+        _check_folder(where)
         handle, partial = tempfile.mkstemp(prefix=name, suffix=".partial", dir=where)
         with os.fdopen(handle, "wb") as file:
             file.write(_digest(name, data) + data)

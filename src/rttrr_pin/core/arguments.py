@@ -67,14 +67,16 @@ def names_of(argument: str, values: str | Iterable[str]) -> tuple[str, ...]:
     raise InputError(f"{argument} is {values!r}: pass a name, or several in a tuple")
 
 
-def choice(argument: str, value: object, *known: str) -> None:
-    """A word is one of those that are known.
+def choice(argument: str, value: object, *known: str, option: str = "") -> None:
+    """A word is one of those that are known. `option` is what the command line calls it.
 
     Raises:
         InputError: it is not.
     """
     if not isinstance(value, str) or value not in known:
-        raise InputError(f"{argument} is {value!r}: expected {' or '.join(map(repr, known))}")
+        raise InputError(
+            f"{argument} is {value!r}: expected {' or '.join(map(repr, known))}", {argument: option} if option else {}
+        )
 
 
 def path_of(argument: str, value: object) -> Path:

@@ -52,6 +52,7 @@ from rttrr_pin.implementations.library import (
     urdf_of,
 )
 from rttrr_pin.implementations.pinocchio_model import (
+    Assembly,
     built_model,
     differences,
     merged_apart,
@@ -91,20 +92,21 @@ class Pinocchio:
             self.pin_model, said = built_model(urdf, *root)
         except ImplementationError as error:
             raise ImplementationError(f"Pinocchio refuses the URDF of {model.name!r}: {error}") from error
-        if lines := differences(model, self.pin_model):
+        assembly = Assembly(model, self.pin_model)
+        if lines := differences(assembly):
             raise ModelMismatchError("Pinocchio", lines, said)
         self.pin_model.gravity.linear = np.array(model.gravity)
         self.model = model
-        axes = snapped_axes(model, self.pin_model)
+        axes = snapped_axes(assembly)
         joints = (replace(joint, axis=axes.get(i, joint.axis)) for i, joint in enumerate(model.joints))
         self.built = replace(model, joints=tuple(joints)) if axes else model
         self.notes = tuple(filter(None, (_snapped(model, axes), said)))
         self.joints = pin_joints(model, self.pin_model)
         for joint in self.joints:
             self.pin_model.armature[joint.v] = joint.joint.effects.armature
-        self.links = pin_links(model, self.pin_model)
-        self._apart = merged_apart(model, self.pin_model)
-        self.data = self.pin_model.createData()
+        self.links = pin_links(assembly)
+        self._apart = merged_apart(assembly)
+        self.data = assembly.data
         fixed = self.links.fixed
         self._carrier = [p if p >= 0 and fixed[p] else -1 for p in (joint.parent for joint in model.joints)]
         self._inward = [p if own else -1 for p, own in zip(self._carrier, fixed, strict=True)]

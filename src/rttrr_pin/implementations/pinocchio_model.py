@@ -71,22 +71,44 @@ COLUMNS: tuple[tuple[type, tuple[int, ...]], ...] = (
 """Of each field of `PinLinks` the type, and the shape for one link; a robot of one link that stands still has none."""
 
 
-def pin_links(model: Model, pin_model: Any) -> PinLinks:
+class Assembly:
+    """A file's model and what Pinocchio built of it, with what both are compared by.
+
+    Attributes:
+        model: the file's.
+        pin_model, data: Pinocchio's.
+        frames: Pinocchio's by type and name; it would look through all of them for each.
+        placed: where each link is on its body.
+        merged: by index of a link that a moving joint carries, the links that are one body with it, itself first.
+        inertias: of each such body by the file, with what each adds up.
+    """
+
+    def __init__(self, model: Model, pin_model: Any) -> None:
+        self.model, self.pin_model, self.data = model, pin_model, pin_model.createData()
+        self.frames = {(frame.type, frame.name): frame for frame in pin_model.frames}
+        self.placed = _placed(model)
+        self.merged = _merged(model, self.placed)
+        self.inertias = {i: _inertia(model, parts) for i, parts in self.merged.items()}
+
+
+def pin_links(assembly: Assembly) -> PinLinks:
     """The links of the file with Pinocchio's placements and inertias.
 
     Pinocchio keeps the inertia of a link apart unless massive links are fixed to it; then only the sum is there, and
     the link's own part is the file's (that the sum is right, `differences` has shown).
     """
-    links, frames, merged = [], _frames(pin_model), _merged(model, _placed(model))
+    model, frames, links = assembly.model, assembly.frames, []
     for i, (joint, link) in enumerate(zip(model.joints, model.links, strict=True)):
         fixed = joint.nv == 0
         frame = frames[pin.FrameType.BODY, link.name]
         if fixed:
             inertia = frames[pin.FrameType.FIXED_JOINT, joint.name].inertia
-        elif any(model.links[part.link].mass or model.links[part.link].inertia.any() for part in merged[i][1:]):
+        elif any(
+            model.links[part.link].mass or model.links[part.link].inertia.any() for part in assembly.merged[i][1:]
+        ):
             inertia = None  # pin.Inertia refuses tensors that Pinocchio's own reader takes
         else:
-            inertia = pin_model.inertias[frame.parentJoint]
+            inertia = assembly.pin_model.inertias[frame.parentJoint]
         mass, com, tensor = link.mass, link.com, link.inertia
         if inertia is not None:
             mass, com, tensor = inertia.mass, inertia.lever, inertia.inertia
@@ -96,33 +118,27 @@ def pin_links(model: Model, pin_model: Any) -> PinLinks:
     return PinLinks(*(np.array(x, kind).reshape(-1, *shape) for x, (kind, shape) in zip(columns, COLUMNS, strict=True)))
 
 
-def _frames(pin_model: Any) -> dict[tuple[Any, str], Any]:
-    """Pinocchio's frames by type and name; it would look through all of them for each."""
-    return {(frame.type, frame.name): frame for frame in pin_model.frames}
-
-
-def differences(model: Model, pin_model: Any) -> list[str]:
+def differences(assembly: Assembly) -> list[str]:
     """One line for each number of Pinocchio's model that is not what the file says."""
-    built = [name for name in pin_model.names if name != "universe"]
+    model = assembly.model
+    built = [name for name in assembly.pin_model.names if name != "universe"]
     expected = [joint.name for joint in model.joints if joint.nv]
     if sorted(built) != sorted(expected):  # an object's joints keep their order, which may be another
         return [f"moving joints: {', '.join(built)}, the file has {', '.join(expected)}"]
-    data, frames = pin_model.createData(), _frames(pin_model)
-    placed = _placed(model)
-    merged = _merged(model, placed)
     lines: list[str] = []
-    for joint, link, place in zip(model.joints, model.links, placed, strict=True):
+    for joint, link, place in zip(model.joints, model.links, assembly.placed, strict=True):
         if joint.nv:
-            lines += _moving_differences(model, pin_model, data, place, merged[place.link])
+            lines += _moving_differences(assembly, place)
             continue
-        frame = frames[pin.FrameType.FIXED_JOINT, joint.name]
+        frame = assembly.frames[pin.FrameType.FIXED_JOINT, joint.name]
         lines += _placement_differences(joint, place, frame.placement)
         lines += _inertia_differences(link, _inertia(model, [_itself(place.link)]), frame.inertia)
     return [*lines, *_mimic_differences(model)]
 
 
-def _moving_differences(model: Model, pin_model: Any, data: Any, placed: _Placed, body: list[_Placed]) -> Iterator[str]:
+def _moving_differences(assembly: Assembly, placed: _Placed) -> Iterator[str]:
     """Placement, axis and limits of a joint that moves; mass, centre and tensor of the body that it carries."""
+    model, pin_model, data = assembly.model, assembly.pin_model, assembly.data
     joint, link = model.joints[placed.link], model.links[placed.link]
     number = pin_model.getJointId(joint.name)
     parent = pin_model.getJointId(model.joints[placed.on].name) if placed.on >= 0 else 0
@@ -135,7 +151,7 @@ def _moving_differences(model: Model, pin_model: Any, data: Any, placed: _Placed
         yield from library.differs(f"joint {joint.name!r} axis", _subspace(joint), data.joints[number].S, 1.0)
     if joint.type.has_axis:
         yield from library.limit_differences(joint, _limits(pin_model, built.idx_q, built.idx_v))
-    yield from _inertia_differences(link, _inertia(model, body), pin_model.inertias[number])
+    yield from _inertia_differences(link, assembly.inertias[placed.link], pin_model.inertias[number])
 
 
 def _placement_differences(joint: Joint, expected: _Placed, built: Any) -> Iterator[str]:
@@ -144,16 +160,16 @@ def _placement_differences(joint: Joint, expected: _Placed, built: Any) -> Itera
     )
 
 
-def merged_apart(model: Model, pin_model: Any) -> dict[int, library.Scales]:
+def merged_apart(assembly: Assembly) -> dict[int, library.Scales]:
     """By Pinocchio's joint, how far mass, centre and tensor of a body of several links may be from the file's.
 
     What merging rounds is some eps of the longest length, in any direction: here as it is, and what our own sum rounds.
     """
-    apart = {}
-    for i, parts in _merged(model, _placed(model)).items():
-        if len(parts) > 1:
-            number = pin_model.getJointId(model.joints[i].name)
-            inertia, (expected, scales) = pin_model.inertias[number], _inertia(model, parts)
+    apart, pin_model = {}, assembly.pin_model
+    for i, (expected, scales) in assembly.inertias.items():
+        if len(assembly.merged[i]) > 1:
+            number = pin_model.getJointId(assembly.model.joints[i].name)
+            inertia = pin_model.inertias[number]
             built = zip(expected, (inertia.mass, inertia.lever, inertia.inertia), scales, strict=True)
             mass, com, tensor = (float(norm(np.ravel(x - y))) + MERGING * EPS * float(scale) for x, y, scale in built)
             apart[number] = mass, com, tensor
@@ -192,11 +208,11 @@ def _mimic_differences(model: Model) -> Iterator[str]:
             yield from library.mimic_differences(joint, built.scaling, built.offset)
 
 
-def snapped_axes(model: Model, pin_model: Any) -> dict[int, Array]:
+def snapped_axes(assembly: Assembly) -> dict[int, Array]:
     """By index of its joint, each axis that Pinocchio took as x, y or z though it lies apart by more than rounding."""
-    data = pin_model.createData()
-    moving = {i: data.joints[pin_model.getJointId(joint.name)].S for i, joint in enumerate(model.joints) if joint.nv}
-    axes = {i: _snapped_axis(model.joints[i], S) for i, S in moving.items()}
+    number, built = assembly.pin_model.getJointId, assembly.data.joints
+    moving = {i: joint for i, joint in enumerate(assembly.model.joints) if joint.nv}
+    axes = {i: _snapped_axis(joint, built[number(joint.name)].S) for i, joint in moving.items()}
     return {i: axis for i, axis in axes.items() if axis is not None}
 
 
@@ -253,7 +269,7 @@ def _placed(model: Model) -> list[_Placed]:
 
 
 def _merged(model: Model, placed: list[_Placed]) -> dict[int, list[_Placed]]:
-    """By index of a link that a moving joint carries, the links that are one body with it, itself first."""
+    """Which links are one body, see `Assembly.merged`."""
     bodies = {i: [_itself(i)] for i, joint in enumerate(model.joints) if joint.nv}
     for place in placed:
         if not model.joints[place.link].nv and place.on >= 0:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from math import inf, isfinite
 
@@ -16,7 +15,7 @@ from rttrr_pin.urdf.faults import Fault
 
 def _read_by_streams(fault: Fault) -> bool:
     """Whether as many numbers as there should be, and no more, stand at the start of an attribute."""
-    text, count = fault.value.lstrip(), 0
+    text, count = (fault.value or "").lstrip(), 0
     while (number := NUMBER.match(text)) and isfinite(float(number[0])):
         text, count = text[number.end() :].lstrip(), count + 1
     return count == (3 if fault.attribute in ("xyz", "rpy") else 1)
@@ -29,7 +28,7 @@ def _numbers(read: bool) -> Places:
 
 def _reversed(document: UrdfDocument) -> Iterator[str]:
     """Joints whose lower limit is above the upper one, both written; also continuous ones."""
-    yield from (fault.name for fault in document.faults if fault.kind == "range" and "exchange" in fault.message)
+    yield from (fault.name for fault in document.faults if fault.kind == "range" and not fault.attribute)
     for joint in document.joints.values():
         if joint.type == "continuous" and joint.limits.get("lower", -inf) > joint.limits.get("upper", inf):
             yield joint.name
@@ -38,7 +37,7 @@ def _reversed(document: UrdfDocument) -> Iterator[str]:
 def _open(document: UrdfDocument) -> Iterator[str]:
     """Joints of whose range Drake makes another: an end that is left out is 0 in URDF."""
     both = {"lower", "upper"}
-    half = {fault.name for fault in document.faults if fault.kind == "range" and "exchange" not in fault.message}
+    half = {fault.name for fault in document.faults if fault.kind == "range" and fault.attribute}
     for joint in document.joints.values():
         ranged = joint.limit is not None and joint.type in LIMITED
         limited = joint.type == "continuous" and both & joint.limits.keys()
@@ -65,7 +64,7 @@ def _damped(document: UrdfDocument) -> Iterator[str]:
 
 def _names_version(document: UrdfDocument) -> Iterator[str]:
     """The robot, if it names the version of its format."""
-    if re.search(r"<robot\b[^>]*\sversion\s*=", document.file_text):
+    if document.names_version:
         yield document.name
 
 

@@ -81,7 +81,7 @@ def _in_elements(element: str, holds: Callable[[Fault], object]) -> Places:
 def _missing_moment(document: UrdfDocument) -> Iterator[str]:
     """Links whose <inertial> lacks a mass, a moment, or all of the tensor."""
     for fault in document.faults:
-        entry = fault.kind == "inertia" and not fault.assumed.startswith(("ixy", "ixz", "iyz"))
+        entry = fault.kind == "inertia" and fault.attribute not in ("ixy", "ixz", "iyz")
         if entry or (fault.kind == "mass" and (fault.missing or fault.element == "inertial")):
             yield fault.name
 
@@ -131,11 +131,11 @@ FAULT_RULES = (
          "urdfdom: urdf_parser/src/model.cpp, parseURDF", faults("name", lambda fault: fault.tag != "robot")),
     Rule("yourdfpy-unnamed", (YOURDFPY,), Behaviour.REFUSE,
          "a link or joint has no name",
-         "yourdfpy: urdf.py, URDF._parse_link", faults("name", lambda fault: fault.missing)),
+         "yourdfpy: urdf.py, URDF._parse_link", faults("name", lambda fault: fault.tag != "robot" and not fault.name)),
     Rule("yourdfpy-names", (YOURDFPY,), Behaviour.ALTER,
          "of links or joints of one name the last counts",
          "yourdfpy: urdf.py, URDF._determine_actuated_joints",
-         faults("name", lambda fault: fault.tag != "robot" and not fault.missing)),
+         faults("name", lambda fault: fault.tag != "robot" and fault.name)),
     Rule("urdfdom-version", URDFDOM, Behaviour.REFUSE,
          "the version is none of 1.0, 1.1 and 1.2",
          "urdfdom: urdf_parser/src/model.cpp, parseURDF", faults("version")),
@@ -181,7 +181,7 @@ FAULT_RULES = (
     Rule("yourdfpy-unused", (YOURDFPY,), Behaviour.REFUSE,
          "the axis or a limit of a fixed joint cannot be read",
          "yourdfpy: urdf.py, URDF._parse_axis and URDF._parse_limit",
-         faults("unused", lambda fault: not fault.missing and not any(key in fault.message for key in LIMITS_1_2))),
+         faults("unused", lambda fault: not fault.missing and fault.attribute not in LIMITS_1_2)),
     Rule("urdfdom-asked", URDFDOM, Behaviour.REFUSE,
          "<limit>, <dynamics>, <calibration> or <safety_controller> lacks a number",
          "urdfdom: urdf_parser/src/joint.cpp, parseJoint", faults("asked")),
@@ -205,11 +205,11 @@ FAULT_RULES = (
          "pinocchio: include/pinocchio/multibody/model.hxx, ModelTpl::addJoint", faults("limit")),
     Rule("mimic-nothing", (*URDFDOM, MUJOCO), Behaviour.REFUSE,
          "a <mimic> names no joint",
-         "urdfdom: urdf_parser/src/joint.cpp, parseJointMimic", faults("mimic", lambda fault: fault.missing)),
+         "urdfdom: urdf_parser/src/joint.cpp, parseJointMimic", faults("mimic", lambda fault: not fault.value)),
     Rule("mujoco-itself", (MUJOCO,), Behaviour.REFUSE,
          "a joint follows itself",
          "mujoco: src/user/user_objects.cc, mjCEquality::Compile",
-         faults("mimic", lambda fault: f"itself through {fault.name} -> {fault.name}:" in fault.message)),
+         faults("mimic", lambda fault: fault.value == fault.name)),
     Rule("yourdfpy-mimic", (YOURDFPY,), Behaviour.ALTER,
          "a joint whose <mimic> leads to no joint that could be followed does not move",
          "yourdfpy: urdf.py, URDF._determine_actuated_joints", faults("mimic")),

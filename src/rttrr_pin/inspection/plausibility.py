@@ -11,7 +11,9 @@ from rttrr_pin.inspection.cases import DENSITIES, LARGEST_GYRATION, Case, cases,
 from rttrr_pin.inspection.causes import cause_of
 from rttrr_pin.inspection.checks import Observation, Severity, Subject, check
 from rttrr_pin.inspection.merged import anchored
-from rttrr_pin.inspection.readings import LENGTH_UNITS
+
+LENGTH_UNITS = {"mm": 1e-3, "cm": 1e-2, "in": 0.0254}
+"""How many m each is."""
 
 MARKER = 1e-8
 """Volume of the hull [m^3]: boxes of a millimetre or two are drawn for sensors that have no drawing."""

@@ -41,9 +41,6 @@ TENSOR_UNITS = {
 MASS_UNITS = {"g": 1e-3, "lb": 0.45359237}
 """How many kg each is."""
 
-LENGTH_UNITS = {"mm": 1e-3, "cm": 1e-2, "in": 0.0254}
-"""How many m each is."""
-
 ORDERS = (
     *(" ".join((a, "ixy", "ixz", b, "iyz", c)) for a, b, c in list(permutations(DIAGONAL))[1:]),
     "ixx iyz ixz iyy ixy izz",

@@ -10,15 +10,14 @@ from typing import Any
 
 from rttrr_pin.errors import InputError
 from rttrr_pin.reporting.interrupts import held_back, put_in_place
-from rttrr_pin.reporting.results import finite
 
 PARTIAL = ".rttrr-pin."
 """What the name of a file that is not whole yet begins with; short, since the target's may be as long as one may be."""
 
 
 def as_json(data: dict[str, Any]) -> str:
-    """JSON text; what JSON has no number for is written as text ("inf")."""
-    return json.dumps(finite(data), indent=2, allow_nan=False) + "\n"
+    """JSON text of data that are `finite`."""
+    return json.dumps(data, indent=2, allow_nan=False) + "\n"
 
 
 def write_whole(path: Path, text: str) -> None:

@@ -135,6 +135,7 @@ class UrdfDocument:
         folder: where the file lies, to find meshes from; None for a text.
         name: the robot's name.
         version: of the format, such as (1, 0).
+        names_version: whether the file says it.
         links: by name, in the order of the file.
         joints: by name, in the order of the file.
         transmissions: in the order of the file.
@@ -149,6 +150,7 @@ class UrdfDocument:
     folder: Path | None
     name: str
     version: tuple[int, int]
+    names_version: bool
     links: dict[str, UrdfLink]
     joints: dict[str, UrdfJoint]
     transmissions: tuple[UrdfTransmission, ...] = ()

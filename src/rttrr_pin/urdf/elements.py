@@ -64,8 +64,9 @@ class Element:
     def fault(self, kind: str, level: Level, message: str, assumed: str = "", attribute: str = "") -> None:
         """Log a fault at this element's line, of one of its attributes or of another kind."""
         where = (kind, level, self.tag, self.name, self.line, shown(self.xml))
-        value = self.xml.get(attribute, "") if attribute else ""
-        self.log.faults.append(Fault(*where, message, assumed, attribute, value))
+        self.log.faults.append(
+            Fault(*where, message, assumed, attribute, self.xml.get(attribute) if attribute else None)
+        )
 
     def assume(self, kind: str, message: str, assumed: str, attribute: str = "") -> None:
         """Log what a number depends on, and what is read in its place: nothing for what xacro would write."""
@@ -75,9 +76,9 @@ class Element:
         """Log what makes no robot, and what is left out."""
         self.fault(kind, Level.ERROR, message, left_out)
 
-    def note(self, kind: str, message: str) -> None:
+    def note(self, kind: str, message: str, attribute: str = "") -> None:
         """Log what no number depends on."""
-        self.fault(kind, Level.NOTE, message)
+        self.fault(kind, Level.NOTE, message, attribute=attribute)
 
     def nearest(self, got: str, known: Iterable[str]) -> str:
         """The hint that follows an unknown name; none after many, since each looks through all names."""

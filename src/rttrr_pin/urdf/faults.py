@@ -75,8 +75,8 @@ class Fault:
         element: the element, such as `"axis"`; empty where it is the text of the file.
         message: what is there, and the fix.
         assumed: what was read in its place; empty for a note.
-        attribute: of the element, where it is the value of one; empty where it is something else.
-        value: the text of that attribute.
+        attribute: of the element, where it is about one; of a range, the only end that is written. Else empty.
+        value: the text of that attribute; None where it is not there.
     """
 
     kind: str
@@ -88,12 +88,12 @@ class Fault:
     message: str
     assumed: str = ""
     attribute: str = ""
-    value: str = ""
+    value: str | None = None
 
     @property
     def missing(self) -> bool:
         """Whether an attribute is not there, rather than wrong."""
-        return self.message.startswith(f"<{self.element}> has no ")
+        return bool(self.attribute) and self.value is None
 
     @property
     def label(self) -> str:

@@ -37,8 +37,9 @@ def read_limit(joint: Element, joint_type: JointType, version: tuple[int, int]) 
     lower, upper = (numbers.get(key, Number("0")) for key in ("lower", "upper"))
     if joint_type.limits != "none" and float(lower) > float(upper):
         message = f"lower limit {float(lower)} is above the upper one, {float(upper)}: "
-        message += "exchange them" if {"lower", "upper"} <= numbers.keys() else "write both, since 0 stands for none"
-        limit.assume("range", message, f"a range from {float(upper)} to {float(lower)}")
+        one = "" if {"lower", "upper"} <= numbers.keys() else "lower" if "lower" in numbers else "upper"
+        message += "write both, since 0 stands for none" if one else "exchange them"
+        limit.assume("range", message, f"a range from {float(upper)} to {float(lower)}", one)
         limit.write(lower=upper.text, upper=lower.text)
         numbers |= {"lower": upper, "upper": lower}
     return numbers
@@ -66,7 +67,7 @@ def _check_unused(limit: Element, keys: Iterable[str], positive: Collection[str]
         if not problem and key in positive and float(limit.xml.get(key)) < 0.0:
             problem = f"{key} limit is negative"
         if problem:
-            limit.note("unused", problem)
+            limit.note("unused", problem, key)
 
 
 def _complete_limit(joint: Element, limit: Element | None, joint_type: JointType, version: tuple[int, int]) -> None:

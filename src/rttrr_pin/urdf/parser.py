@@ -57,7 +57,7 @@ def read_document(source: AnySource, reading: Reading = AS_IT_STANDS, tolerant: 
     log = Log(file.name, reading.lenient)
     root = parse_xml(file, log)
     check_words(root, log)
-    robot = Element(root, log)
+    robot, names_version = Element(root, log), "version" in root.attrib
     for follower in root.findall("joint/mimic") if not reading.mimic else ():
         Element(follower, log).remove()
     name, version = _name(robot), _version(robot)
@@ -84,6 +84,7 @@ def read_document(source: AnySource, reading: Reading = AS_IT_STANDS, tolerant: 
         folder=file.folder,
         name=name,
         version=version,
+        names_version=names_version,
         links=read_links,
         joints=read_joints,
         transmissions=transmissions,
@@ -170,7 +171,7 @@ def _inertial(inertial: Element, version: tuple[int, int]) -> UrdfInertial | Non
         tensor = inertial.added("inertia", **dict.fromkeys(ENTRIES, "0"))
     for entry in ENTRIES:
         if entry not in tensor.xml.attrib:
-            tensor.assume("inertia", tensor.problem(entry), f'{entry}="0"')
+            tensor.assume("inertia", tensor.problem(entry), f'{entry}="0"', entry)
             tensor.write(**{entry: "0"})
     return UrdfInertial(origin, mass.number("value"), {name: tensor.number(name) for name in ENTRIES})
 
@@ -251,7 +252,7 @@ def _axis(joint: Element, joint_type: JointType) -> NumberList:
     axis = joint.child("axis", used=joint_type.has_direction)
     if not joint_type.has_direction:
         if axis is not None and (problem := axis.problem("xyz", 3)):
-            axis.note("unused", problem)
+            axis.note("unused", problem, "xyz")
         return NumberList("1 0 0")
     default = "0 0 1" if joint_type.axis_direction else "1 0 0"
     if axis is None:

@@ -80,7 +80,7 @@ def check_mimics(joints: dict[str, UrdfJoint], elements: Mapping[str, Element]) 
             # The fault stands at the link of the chain that is wrong, be it another joint's <mimic>.
             if problem := _followed(elements[name], name, mimic.joint, joints, followed):
                 element = elements[name].children("mimic")[0]
-                element.assume("mimic", problem, f"joint {name!r} moves by itself")
+                element.assume("mimic", problem, f"joint {name!r} moves by itself", "joint")
                 element.remove()
                 joints[name] = replace(joints[name], mimic=None)
                 break

@@ -142,6 +142,8 @@ class Comparison:
         quantities: those that both programs give.
         rows: of each quantity at each link or joint.
         whole: by quantity, the largest relative error in eps, in the norm over all links or joints; as `Row.relative`.
+        zero: the quantities that are zero everywhere, in every state so far, by both programs.
+        seen: the others.
     """
 
     def __init__(self, model: Model, quantities: Sequence[str] = QUANTITIES, name: str = "", version: str = "") -> None:
@@ -151,12 +153,8 @@ class Comparison:
         self.rows = tuple(Row(*labels) for labels in _labels(model) if labels[0] in self.quantities)
         self.whole = {quantity: Worst() for quantity in self.quantities}
         self._carriers = carriers(model)
-        self._zero = {row.quantity for row in self.rows}
-
-    @property
-    def zero(self) -> set[str]:
-        """The quantities that are zero everywhere, in every state so far, by both programs."""
-        return set(self._zero)
+        self.zero = {row.quantity for row in self.rows}
+        self.seen = set[str]()
 
     @property
     def passed(self) -> bool:
@@ -206,7 +204,8 @@ class Comparison:
         for key in self.quantities:
             x, y = subject.values[key], reference.values[key]
             if x.any() or y.any():
-                self._zero.discard(key)
+                self.zero.discard(key)
+                self.seen.add(key)
             errors = np.abs(x - y) if key == "tau" else norm(x - y)
             lengths = self._sizes_of_tau(batch, subject, reference) if key == "tau" else norm(y)
             # A result that is not finite is as far off as can be: an infinite error, of a size that excuses nothing.

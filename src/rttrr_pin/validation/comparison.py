@@ -85,8 +85,8 @@ class Run:
     @property
     def zero(self) -> set[str]:
         """The quantities that are zero in all that was compared."""
-        seen = {row.quantity for one in self.comparisons for row in one.rows if row.quantity not in one.zero}
-        return {row.quantity for one in self.comparisons for row in one.rows} - seen
+        zero, seen = [one.zero for one in self.comparisons], [one.seen for one in self.comparisons]
+        return set[str]().union(*zero).difference(*seen)
 
     def check_compared(self) -> None:
         """Zeros that equal zeros are no agreement.
@@ -94,7 +94,7 @@ class Run:
         Raises:
             InputError: nothing else was seen.
         """
-        if all(row.quantity in self.zero for one in self.comparisons for row in one.rows):
+        if not any(one.seen for one in self.comparisons):
             raise InputError(
                 f"{', '.join(key for key in QUANTITIES if key in self.zero)} of robot "
                 f"{self.states.sampler.model.name!r} are zero in every state, by all programs: nothing was compared; "

@@ -10,7 +10,7 @@ import warnings
 from collections import Counter, deque
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, replace
 from multiprocessing import connection, get_context, parent_process, resource_tracker
 from multiprocessing.connection import Connection
 from pathlib import Path
@@ -21,6 +21,7 @@ from rttrr_pin.errors import LoadWarning, ModelMismatchError, RttrrError, Unknow
 from rttrr_pin.implementations import names
 from rttrr_pin.loading import load
 from rttrr_pin.reporting.interrupts import held_back
+from rttrr_pin.reporting.results import finite
 from rttrr_pin.urdf.packages import named_packages
 from rttrr_pin.validation.run import validate
 from rttrr_pin.validation.sampling import SAMPLINGS
@@ -127,7 +128,9 @@ def validate_many(
         entries[number] = entry
         if progress is not None:
             progress(len(entries))
-    return [entries[number] for number in range(len(jobs))]
+    # What inspect finds in a file does not depend on the base: the first job of each counts it.
+    errors = {entry.name: entry.errors for entry in entries.values() if entry.base == BASES[0]}
+    return [replace(entries[number], errors=errors[entries[number].name]) for number in range(len(jobs))]
 
 
 Job = tuple[str, Path, Base, Task]
@@ -240,7 +243,7 @@ def _entry(name: str, path: Path, base: Base, task: Task) -> Entry:
                 packages=task.packages,
             )
         notes = tuple(note.text for note in robot.model.notes)
-        errors = count_errors(robot.model.document)
+        errors = count_errors(robot.model.document) if base == BASES[0] else 0
         result = validate(robot, task.subject, task.reference, task.n_states, task.seed, task.sampling)
     except (RttrrError, MemoryError) as error:
         verdict: Verdict = "disagree" if isinstance(error, ModelMismatchError) else "unusable"
@@ -266,7 +269,7 @@ def _entry(name: str, path: Path, base: Base, task: Task) -> Entry:
 def many_data(entries: Sequence[Entry], task: Task, seconds: float) -> dict[str, Any]:
     """The outcome of many robots as data for JSON."""
     counts = Counter[str](entry.verdict for entry in entries)
-    return {
+    data = {
         "schema": 1,
         "passed": counts["agree"] == len(entries),
         **asdict(task),
@@ -274,3 +277,4 @@ def many_data(entries: Sequence[Entry], task: Task, seconds: float) -> dict[str,
         "entries": [asdict(entry) for entry in entries],
         "seconds": seconds,
     }
+    return finite(data)

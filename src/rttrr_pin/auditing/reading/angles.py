@@ -47,7 +47,7 @@ def angle_of(function: str, angle: Angle | None, start: int) -> Named | Fraction
     Raises:
         UnreadableError: it is no sum of coordinates, whole multiples and halves of them, and quarter turns.
     """
-    angle, note = _with_turns(angle or {}) if angle is not None else ({ONE: Fraction(1)}, "")
+    angle, note = _with_turns(angle) if angle is not None else ({ONE: Fraction(1)}, "")
     own = {k: x for k, x in sorted(angle.items()) if k > 0}
     turns = 2 * angle.get(PI, Fraction(0))
     divided = all(x.denominator in (1, *DIVISORS) for x in own.values())
