@@ -42,6 +42,7 @@ COMMANDS: dict[str, list[str]] = {
     "derive": ["derive", "trr", "--latex", "d.tex", "--markdown", "d.md", "--python", "d.py", "--c", "d.c"],
     "inspect": ["inspect", str(ROBOTS / "rttrr.urdf"), "--json", "out.json", "--fix", "fixed.urdf"],
     "inspect FOLDER": ["inspect", str(ROBOTS), "--json", "out.json", "--sarif", "out.sarif", "--junit", "out.xml"],
+    "sample": ["sample", "rttrr", "-n", "5000", "-o", "states.csv"],
     "new": ["new", "RTTRR", "-o", "new.urdf"],
 }
 """What is run, in an empty folder."""

@@ -24,6 +24,7 @@ PACKAGES = (
     "rttrr_pin.errors",
     "rttrr_pin.implementations",
     "rttrr_pin.validation",
+    "rttrr_pin.diagnosis",
     "rttrr_pin.laws",
     "rttrr_pin.inspection",
     "rttrr_pin.auditing",

@@ -24,6 +24,7 @@ COMMANDS = {
     "validate": "rttrr_pin.validation.command:validate",
     "state": "rttrr_pin.validation.command:state",
     "search": "rttrr_pin.validation.command:search",
+    "sample": "rttrr_pin.diagnosis.sample_command:sample",
     "laws": "rttrr_pin.laws.command:laws",
     "audit": "rttrr_pin.auditing.command:audit",
     "derive": "rttrr_pin.derivation.command:derive",

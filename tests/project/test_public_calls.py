@@ -14,6 +14,7 @@ import pytest
 import rttrr_pin
 from rttrr_pin import Joint, JointEffects, Limits, Link, Mimic, Model, RandomPayload, Robot, RttrrError, Wrench
 from rttrr_pin.core.joints import REVOLUTE
+from rttrr_pin.diagnosis import sample_states
 from rttrr_pin.validation import Sampler
 
 ROOT = Path(__file__).parents[2]
@@ -114,6 +115,7 @@ def calls() -> dict[str, Call]:
             rttrr_pin.search_worst_state,
             {"robot": robot, **PROGRAMS, "evaluations": 512, "seed": 0, "payload": None},
         ),
+        "sample_states": (sample_states, {"robot": robot, "n": 10, "seed": 0, "payload": None}),
         "check_laws": (
             rttrr_pin.check_laws,
             {"robot": robot, "subject": "kernel", "n_states": 2, **STATES, "select": ("E",)},
@@ -135,6 +137,7 @@ NAMES = (
     *("LinkWrenches", "Wrench", "RandomPayload", "JointEffects", "Joint", "Limits", "Mimic", "Link", "Model"),
     *("validate", "compare_state", "search_worst_state", "check_laws", "inspect", "derive", "read_publication"),
     "audit",
+    "sample_states",
     *(
         "BaseParameters.of",
         "BaseParameters.regressor",

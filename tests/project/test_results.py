@@ -19,6 +19,7 @@ import pytest
 
 import rttrr_pin
 from rttrr_pin import errors
+from rttrr_pin.diagnosis import sample_states
 from rttrr_pin.implementations import make_implementation
 from rttrr_pin.validation import Sampler
 
@@ -26,7 +27,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples/audit_two_link.toml"
 
 PACKAGES = (
     "rttrr_pin",
-    *(f"rttrr_pin.{name}" for name in ["errors", "implementations", "validation", "laws", "inspection"]),
+    *(f"rttrr_pin.{name}" for name in ["errors", "implementations", "validation", "laws", "inspection", "diagnosis"]),
 )
 PACKAGES = (*PACKAGES, *(f"rttrr_pin.{name}" for name in ["auditing", "derivation", "compile", "exact"]))
 
@@ -64,6 +65,7 @@ def objects() -> dict[str, Any]:
         "StateReport": rttrr_pin.compare_state(robot, np.int64(3), "recursion", "kernel"),  # type: ignore[arg-type]
         "StateReport of nan": rttrr_pin.compare_state(robot, 3, **wrong),
         "WorstCase": rttrr_pin.search_worst_state(robot, "recursion", "kernel", np.int64(512), seed=np.int64(1)),  # type: ignore[arg-type]
+        "Sample": sample_states(robot, 10),
         "LawReport": rttrr_pin.check_laws(robot, n_states=np.int64(2), seed=np.int64(2)),  # type: ignore[arg-type]
         "Inspection": rttrr_pin.inspect(robot),
         "Derivation": rttrr_pin.derive(robot, "g"),
@@ -76,7 +78,16 @@ def objects() -> dict[str, Any]:
 NAMES = (
     *("Robot", "Model", "Joint", "Link", "Kernel", "Wrench", "LinkWrenches", "Enclosures", "BaseParameters"),
     *("WrenchEstimate", "Batch", "Evaluation", "Validation", "Validation of nan", "StateReport", "StateReport of nan"),
-    *("WorstCase", "LawReport", "Inspection", "Derivation", "Derivation in steps", "Publication", "AuditResult"),
+    *(
+        "Sample",
+        "WorstCase",
+        "LawReport",
+        "Inspection",
+        "Derivation",
+        "Derivation in steps",
+        "Publication",
+        "AuditResult",
+    ),
 )
 
 COPIES: dict[str, Callable[[Any], Any]] = {

@@ -66,6 +66,7 @@ COMMANDS: dict[str, list[str]] = {
     "state": ["state", "{robot}"],
     "search": ["search", "{robot}", "--evaluations", "600"],
     "laws": ["laws", "{robot}", "--states", "20"],
+    "sample": ["sample", "{robot}", "-n", "20"],
     "derive": ["derive", "{robot}"],
     "inspect": ["inspect", "{robot}"],
     "audit": ["audit"],
@@ -113,7 +114,7 @@ def test_a_full_disk_behind_the_output_is_an_error(
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("command", [name for name in COMMANDS if name not in ("derive", "new")])
+@pytest.mark.parametrize("command", [name for name in COMMANDS if name not in ("derive", "new", "sample")])
 def test_who_prints_nothing_needs_no_output(command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     words = [*words_of(command, tmp_path), "--quiet", "--json", str(tmp_path / "out.json")]
     if "--full" in words:

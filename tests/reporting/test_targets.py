@@ -21,6 +21,7 @@ WRITING: dict[str, Command] = {
     "state": lambda robot, out: ["state", str(robot), "--json", out],
     "search": lambda robot, out: ["search", str(robot), "--json", out],
     "laws": lambda robot, out: ["laws", str(robot), "--json", out],
+    "sample": lambda robot, out: ["sample", str(robot), "-o", out],
     "inspect": lambda robot, out: ["inspect", str(robot), "--json", out],
     "derive": lambda robot, out: ["derive", str(robot), "--latex", out],
     "audit": lambda robot, out: ["audit", str(robot), "--html", out],

@@ -12,7 +12,7 @@ import pytest
 from rttrr_pin.cli import main
 from support.faulty import URDF
 
-COMMANDS = ("validate", "state", "search", "laws", "derive", "inspect")
+COMMANDS = ("validate", "state", "search", "sample", "laws", "derive", "inspect")
 
 SDF = '<?xml version="1.0"?>\n<sdf version="1.7"><model name="m"><link name="a"/></model></sdf>'
 

@@ -63,6 +63,7 @@ COMMANDS: dict[str, Callable[[Path], list[str]]] = {
     "state": lambda folder: ["state", f"{folder}/arm.xacro"],
     "search": lambda folder: ["search", f"{folder}/arm.xacro", "--evaluations", "100"],
     "laws": lambda folder: ["laws", f"{folder}/arm.xacro", "--states", "5"],
+    "sample": lambda folder: ["sample", f"{folder}/arm.xacro", "-n", "5"],
     "derive": lambda folder: ["derive", f"{folder}/arm.xacro"],
     "inspect": lambda folder: ["inspect", f"{folder}/arm.xacro"],
     "audit": lambda folder: ["audit", f"{folder}/paper.toml"],

@@ -113,7 +113,7 @@ class Program:
             if self._child is None:
                 self._child = _Child(self.words)
                 weakref.finalize(self, self._child.end, PATIENCE)
-            for line in self._child.ask([_request(batch, k) for k in range(len(batch))], self.seconds, start):
+            for line in self._child.ask([request(batch, k) for k in range(len(batch))], self.seconds, start):
                 replies.append(self._results(line, f"{self.name}, state {batch.first + len(replies)}"))
         except BaseException as error:
             child, self._child = self._child, None
@@ -260,8 +260,8 @@ class _Child:
         return self._tail.decode(errors="replace").strip()
 
 
-def _request(batch: Batch, k: int) -> bytes:
-    """The line for one state."""
+def request(batch: Batch, k: int) -> bytes:
+    """The line that asks a program for state k of a batch (docs/notation.md)."""
     state: dict[str, object] = {key: getattr(batch, key)[k].tolist() for key in ("q", "v", "a")}
     if batch.loads:
         state["payload"] = [

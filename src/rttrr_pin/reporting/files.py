@@ -1,4 +1,4 @@
-"""Files that are written: JSON, and text whole or not at all."""
+"""Files that are written: JSON; text and bytes, whole or not at all."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def as_json(data: dict[str, Any]) -> str:
     return json.dumps(data, indent=2, allow_nan=False) + "\n"
 
 
-def write_whole(path: Path, text: str) -> None:
+def write_whole(path: Path, content: str | bytes) -> None:
     """Write a file whole or not at all, however the process ends.
 
     Raises:
@@ -30,23 +30,26 @@ def write_whole(path: Path, text: str) -> None:
     try:
         if target.exists() and not target.is_file():
             put_in_place(str(path))
-            target.write_text(
-                text, encoding="utf-8", errors="backslashreplace"
-            )  # a pipe or a device is written to, not replaced
+            target.write_bytes(_bytes(content))  # a pipe or a device is written to, not replaced
             return
         with held_back():
-            _replace(target, text)
+            _replace(target, _bytes(content))
             put_in_place(str(path))
     except OSError as error:
         raise InputError(f"{path} cannot be written: {error.strerror}; choose another file") from error
 
 
-def _replace(target: Path, text: str) -> None:
+def _bytes(content: str | bytes) -> bytes:
+    """Text as UTF-8, which has no place for halves of characters."""
+    return content if isinstance(content, bytes) else content.encode("utf-8", "backslashreplace")
+
+
+def _replace(target: Path, content: bytes) -> None:
     """A file beside the target, moved there once it is whole."""
     handle, name = tempfile.mkstemp(dir=target.parent, prefix=PARTIAL)
     try:
-        with os.fdopen(handle, "w", encoding="utf-8", errors="backslashreplace", newline="") as file:
-            file.write(text)
+        with os.fdopen(handle, "wb") as file:
+            file.write(content)
         umask = os.umask(0)
         os.umask(umask)
         Path(name).chmod(target.stat().st_mode & 0o7777 if target.exists() else 0o666 & ~umask)

@@ -107,16 +107,16 @@ class RunOptions:
         robot = [] if self.robot == "rttrr" else [self.robot]
         return shlex.join(["rttrr-pin", name, *robot, *self.unusual(names)])
 
-    def check_target(self, json: str | None, files: Iterable[Path] = ()) -> None:
+    def check_target(self, target: str | None, files: Iterable[Path] = (), option: str = "--json") -> None:
         """The result can be written, and overwrites nothing that is read, nor a program."""
         programs = (name for program in (self.subject, *self.reference) for name in files_of(program))
-        check_targets({"--json": json}, [self.robot, *programs, *files])
+        check_targets({option: target}, [self.robot, *programs, *files])
 
-    def load(self, json: str | None) -> Robot:
-        """The robot, once the result can be written without overwriting any of its files."""
-        self.check_target(json)
+    def load(self, target: str | None, option: str = "--json") -> Robot:
+        """The robot, once the result can be written to this file without overwriting any of its own."""
+        self.check_target(target, option=option)
         robot = self._load()
-        self.check_target(json)
+        self.check_target(target, option=option)
         return robot
 
     def _load(self) -> Robot:
