@@ -1,0 +1,97 @@
+"""How hypotheses alter a program: one link or joint replaced, units told, the line of the file."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+
+import numpy as np
+
+from rttrr_pin.core.algebra import Matrix, Vector
+from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.inertia import SpatialInertia
+from rttrr_pin.core.joint import Joint
+from rttrr_pin.core.model import Link, Model
+from rttrr_pin.diagnosis.variant import Variant
+from rttrr_pin.urdf.document import UrdfDocument
+
+TEN = 10
+"""Inertial parameters of a link."""
+
+SAME = 1e-12
+"""Relative: numbers that differ by less are the same, and one of them is rounded."""
+
+UNIT = 1e-3
+"""Relative: how near a fitted factor is to that of a unit whose name is told."""
+
+
+def with_links(variant: Variant, links: Mapping[int, Link]) -> Variant:
+    """The program with other links, by index."""
+    own = tuple(links.get(i, link) for i, link in enumerate(variant.model.links))
+    return replace(variant, model=replace(variant.model, links=own))
+
+
+def with_joints(variant: Variant, indices: tuple[int, ...], change: Callable[[Joint], Joint]) -> Variant:
+    """The program with some joints changed."""
+    own = tuple(change(joint) if i in indices else joint for i, joint in enumerate(variant.model.joints))
+    return replace(variant, model=replace(variant.model, joints=own))
+
+
+def inertial_parameters(link: Link) -> Array:
+    """m, m c, and the tensor about the origin of {i} of a link, (10,), as in `Robot.inertial_parameters`."""
+    own = SpatialInertia.of(link.mass, Vector.of(link.com), Matrix.of(link.inertia))
+    x, y, z = own.J.rows
+    return np.array([own.m, *own.h, x.x, x.y, y.y, x.z, y.z, z.z], dtype=np.float64)
+
+
+def link_of(link: Link, parameters: Array) -> Link:
+    """A link of such parameters, (10,)."""
+    m, hx, hy, hz, xx, xy, yy, xz, yz, zz = parameters.tolist()
+    J = Matrix((Vector(xx, xy, xz), Vector(xy, yy, yz), Vector(xz, yz, zz)))
+    com, tensor = SpatialInertia(m, Vector(hx, hy, hz), J).about_com()
+    return replace(link, mass=m, com=np.array([*com], dtype=np.float64), inertia=symmetric(tensor.array))
+
+
+def symmetric(tensor: Array) -> Array:
+    """A tensor whose two halves are the same to the bit."""
+    return np.asarray((tensor + tensor.T) / 2.0)
+
+
+def differs(x: Array, y: Array, kinds: tuple[slice, ...] = (slice(None),)) -> bool:
+    """Whether numbers differ by more than rounding of the largest of their kind."""
+    a, b = x.ravel().tolist(), y.ravel().tolist()
+    return any(_differ(a[kind], b[kind]) for kind in kinds)
+
+
+def _differ(a: list[float], b: list[float]) -> bool:
+    """The same of one kind; lists, since for few numbers they are faster than arrays."""
+    gap = max(abs(x - y) for x, y in zip(a, b, strict=True))
+    return gap > 0.0 and gap > SAME * max(map(abs, (*a, *b)))
+
+
+def line_of(model: Model, link: str | None = None, joint: str | None = None) -> str:
+    """The line of the file where a link or joint stands; empty where there is no file."""
+    document = model.document
+    if not isinstance(document, UrdfDocument) or document.made_from:
+        return ""
+    element = document.links.get(link or "") or document.joints.get(joint or "")
+    return "" if element is None else f"line {element.line} of {document.source}"
+
+
+def unit_of(factor: float, units: Mapping[str, float]) -> str:
+    """The unit, or word, whose factor this is, or one over this; empty where there is none."""
+    for name, own in units.items():
+        if any(abs(factor * x - 1.0) < UNIT for x in (own, 1.0 / own)):
+            return name
+    return ""
+
+
+def told_factor(factor: float, units: Mapping[str, float]) -> dict[str, float | str]:
+    """A factor, and the unit that it is of."""
+    unit = unit_of(factor, units)
+    return {"factor": factor} | ({"unit": unit} if unit else {})
+
+
+def with_gravity(variant: Variant, gravity: Array) -> Variant:
+    """The program in another gravity field."""
+    return replace(variant, model=variant.model.with_gravity(gravity))

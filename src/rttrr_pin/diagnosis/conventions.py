@@ -1,0 +1,26 @@
+"""Hypotheses on conventions: signs, units, order of joints, gravity, frames and points; none on the mechanics."""
+
+from __future__ import annotations
+
+from rttrr_pin.core.model import Model
+from rttrr_pin.diagnosis.base_conventions import base_conventions
+from rttrr_pin.diagnosis.gravity import gravities
+from rttrr_pin.diagnosis.hypothesis import Hypothesis
+from rttrr_pin.diagnosis.joint_order import orders
+from rttrr_pin.diagnosis.payload_conventions import payload_conventions
+from rttrr_pin.diagnosis.signs_and_units import signs_and_units
+from rttrr_pin.diagnosis.wrench_conventions import wrench_conventions
+
+
+def conventions(model: Model) -> list[Hypothesis]:
+    """All hypotheses on conventions about a robot; those that change no number of it are left out."""
+    if not model.nv:
+        return [*gravities(model), *wrench_conventions(model), *payload_conventions(model)]
+    return [
+        *gravities(model),
+        *signs_and_units(model),
+        *orders(model),
+        *base_conventions(model),
+        *wrench_conventions(model),
+        *payload_conventions(model),
+    ]

@@ -1,0 +1,332 @@
+"""Hypotheses on signs, units and factors of q, v, a and tau, and on which of them count."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from math import pi
+from typing import Any
+
+import numpy as np
+
+from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.model import Model
+from rttrr_pin.diagnosis.altering import line_of, told_factor, with_gravity
+from rttrr_pin.diagnosis.hypothesis import Hypothesis
+from rttrr_pin.diagnosis.slots import Slots, single, slots
+from rttrr_pin.diagnosis.variant import Values, Variant, run
+from rttrr_pin.implementations.protocol import Batch
+
+DEGREE = pi / 180.0
+
+FORCES = {"mN m": 1e3, "N cm": 1e2, "kgf m": 9.80665, "lbf ft": 1.3558179483314004, "lbf in": 0.1129848290276167}
+"""What a factor of tau may come from; one for 1 N m, or the other way round."""
+
+WORDS = {"a million": 1e6, "twice": 2.0, "the sign": -1.0}
+
+GIVEN_QUARTERS = (90, -90, 180)
+"""Degrees by which the zero of a joint may be off: those that tables of DH parameters bring."""
+
+
+def signs_and_units(model: Model) -> Iterator[Hypothesis]:
+    """All of them."""
+    own = slots(model)
+    yield from _terms(model)
+    yield from _units(own)
+    yield from _of_tau(own)
+    for joint in own:
+        yield from _of_joint(model, joint)
+    for joint in single(own):
+        yield from _zeros(model, joint)
+
+
+def scaled(variant: Variant, q: Mapping[int, float], v: Mapping[int, float], a: Mapping[int, float]) -> Variant:
+    """The program whose inputs are multiplied by factors, by column."""
+
+    def inputs(batch: Batch) -> Batch:
+        return replace(batch, q=_times(batch.q, q), v=_times(batch.v, v), a=_times(batch.a, a))
+
+    return variant.with_input(inputs)
+
+
+def tau_scaled(variant: Variant, factors: Mapping[int, float]) -> Variant:
+    """The program whose tau is multiplied by factors, by column."""
+    return variant.with_output(lambda batch, values: {**values, "tau": _times(values["tau"], factors)})
+
+
+def _times(x: Array, factors: Mapping[int, float]) -> Array:
+    if not factors:
+        return x
+    row = np.ones(x.shape[1])
+    row[list(factors)] = list(factors.values())
+    return x * row
+
+
+@dataclass(frozen=True, slots=True)
+class Term:
+    """What of the equation of motion is left out: rates, accelerations, gravity."""
+
+    id: str
+    sentence: str
+    repair: str
+    v: bool = False
+    a: bool = False
+    gravity: bool = False
+
+
+TERMS = (
+    Term("rates ignored", "rates are not counted: tau has no velocity terms", "pass v", v=True),
+    Term("accelerations ignored", "accelerations are not counted: tau is nle, without M a", "pass a", a=True),
+    Term("gravity alone", "tau is gravity compensation alone: neither rates nor accelerations count", "pass v and a",
+         v=True, a=True),
+    Term("M a alone", "tau is M a alone, without nle", "add velocity terms and gravity", v=True, gravity=True),
+    Term("velocity terms alone", "tau is made of velocity terms alone", "add M a and gravity", a=True, gravity=True),
+)  # fmt: skip
+
+
+def _terms(model: Model) -> Iterator[Hypothesis]:
+    """Terms left out, and factors of them."""
+    for term in TERMS:
+        if not term.gravity or model.gravity.any():
+            yield Hypothesis(term.id, "convention", term.sentence, term.repair, partial(_without, term=term))
+    yield Hypothesis(
+        id="factor of a",
+        kind="convention",
+        sentence="a is multiplied by a factor",
+        repair="pass a as it is",
+        apply=lambda variant, x: scaled(variant, {}, {}, dict.fromkeys(range(model.nv), float(x[0]))),
+        start=(1.5,),
+        neutral=(1.0,),
+        values=_factor(WORDS),
+    )
+    yield Hypothesis(
+        id="factor of v",
+        kind="convention",
+        sentence="v is multiplied by a factor",
+        repair="pass v as it is",
+        apply=lambda variant, x: scaled(variant, {}, dict.fromkeys(range(model.nv), float(x[0])), {}),
+        start=(1.5,),
+        neutral=(1.0,),
+        values=_factor(WORDS),
+    )
+    yield Hypothesis(
+        id="factor of velocity terms",
+        kind="convention",
+        sentence="velocity terms are multiplied by a factor",
+        repair="add velocity terms once, with sign +",
+        apply=_velocity_terms,
+        start=(1.5,),
+        neutral=(1.0,),
+        values=_factor(WORDS),
+    )
+
+
+def _without(variant: Variant, x: Sequence[float], term: Term) -> Variant:
+    def inputs(batch: Batch) -> Batch:
+        v = np.zeros_like(batch.v) if term.v else batch.v
+        a = np.zeros_like(batch.a) if term.a else batch.a
+        return replace(batch, v=v, a=a)
+
+    return (with_gravity(variant, np.zeros(3)) if term.gravity else variant).with_input(inputs)
+
+
+def _velocity_terms(variant: Variant, x: Sequence[float]) -> Variant:
+    """What results without rates, and a factor times the rest."""
+    factor = float(x[0])
+
+    def outputs(batch: Batch, values: Values) -> Values:
+        given = variant.given(batch)
+        still = run(variant.model, replace(given, v=np.zeros_like(given.v)), variant.mutations)
+        for own in variant.outputs:
+            still = own(batch, still)
+        return {
+            key: still[key] + factor * (values[key] - still[key]) if factor != 1.0 else values[key] for key in values
+        }
+
+    return variant.with_output(outputs)
+
+
+def _factor(units: Mapping[str, float]) -> Callable[[Sequence[float]], Mapping[str, Any]]:
+    return lambda x: told_factor(float(x[0]), units)
+
+
+@dataclass(frozen=True, slots=True)
+class Unit:
+    """A factor on coordinates, rates or accelerations that are angles, or lengths."""
+
+    id: str
+    sentence: str
+    repair: str
+    factor: float
+    on: str
+    angles: bool = True
+
+
+UNITS = (
+    Unit("degrees taken", "q, v and a of angles are taken for degrees", "pass degrees, or take radians", DEGREE, "qva"),
+    Unit("degrees given", "q, v and a of angles are converted to degrees and taken for radians", "pass radians",
+         1.0 / DEGREE, "qva"),
+    Unit("degrees of q taken", "q of angles is taken for degrees, v and a for rad/s and rad/s^2",
+         "pass q in degrees, or take radians", DEGREE, "q"),
+    Unit("degrees of q given", "q of angles is converted to degrees and taken for radians", "pass q in radians",
+         1.0 / DEGREE, "q"),
+    Unit("degrees of v and a taken", "v and a of angles are taken for degrees, q for radians",
+         "pass v and a in degrees, or take radians", DEGREE, "va"),
+    Unit("degrees of v and a given", "v and a of angles are converted to degrees and taken for radians",
+         "pass v and a in radians", 1.0 / DEGREE, "va"),
+    Unit("rpm", "v of angles is taken for revolutions per minute", "pass v in rpm, or take rad/s", pi / 30.0, "v"),
+    Unit("mm taken", "q, v and a of lengths are taken for mm", "pass mm, or take m", 1e-3, "qva", angles=False),
+    Unit("mm given", "q, v and a of lengths are converted to mm and taken for m", "pass m", 1e3, "qva", angles=False),
+)  # fmt: skip
+
+
+def _units(own: Sequence[Slots]) -> Iterator[Hypothesis]:
+    """Units of what is given."""
+    for unit in UNITS:
+        columns: dict[str, dict[int, float]] = {"q": {}, "v": {}, "a": {}}
+        for joint in own:
+            lengths = [k for k in joint.q if k not in joint.angles and not joint.quaternions]
+            lengths += joint.q[:3] if joint.quaternions else []  # x, y, z before the quaternion
+            q = joint.angles if unit.angles else lengths
+            v = joint.turns if unit.angles else [k for k in joint.v if k not in joint.turns]
+            for name in unit.on:
+                columns[name] |= dict.fromkeys(q if name == "q" else v, unit.factor)
+        if columns["q"] or columns["v"] or columns["a"]:
+            yield Hypothesis(unit.id, "convention", unit.sentence, unit.repair, partial(_in_unit, columns=columns))
+
+
+def _in_unit(variant: Variant, x: Sequence[float], columns: Mapping[str, Mapping[int, float]]) -> Variant:
+    return scaled(variant, columns["q"], columns["v"], columns["a"])
+
+
+def _of_tau(own: Sequence[Slots]) -> Iterator[Hypothesis]:
+    """Sign and factors of all of tau, or of its moments or forces."""
+    rates = [k for joint in own for k in joint.v]
+    turns = [k for joint in own for k in joint.turns]
+    forces = [k for k in rates if k not in turns]
+    yield Hypothesis(
+        id="sign of tau",
+        kind="convention",
+        sentence="tau has the opposite sign",
+        repair="multiply tau by -1",
+        apply=lambda variant, x: tau_scaled(variant, dict.fromkeys(rates, -1.0)),
+    )
+    parts = [("tau", rates)] + ([("moments in tau", turns), ("forces in tau", forces)] if turns and forces else [])
+    for name, columns in parts:
+        verb = "is" if name == "tau" else "are"
+        yield Hypothesis(
+            id=f"factor of {name}",
+            kind="convention",
+            sentence=f"{name} {verb} multiplied by a factor",
+            repair=f"give {name} in N m and N",
+            apply=partial(_tau_factor, columns=columns),
+            start=(2.0,),
+            neutral=(1.0,),
+            values=_factor(FORCES | WORDS),
+        )
+
+
+def _tau_factor(variant: Variant, x: Sequence[float], columns: Sequence[int]) -> Variant:
+    return tau_scaled(variant, dict.fromkeys(columns, float(x[0])))
+
+
+def _of_joint(model: Model, joint: Slots) -> Iterator[Hypothesis]:
+    """Sign, direction and factor of one joint, and its tau left out."""
+    name = joint.name
+    if len(joint.q) == len(joint.v) == 1:
+        yield Hypothesis(
+            id="joint direction",
+            kind="convention",
+            sentence=f"{name} counts in the opposite direction: its axis, or q, v, a and tau, have the opposite sign",
+            repair=f"negate the axis of {name}",
+            apply=partial(_reversed, joint=joint),
+            joint=name,
+            line=line_of(model, joint=name),
+        )
+    yield Hypothesis(
+        id="tau missing",
+        kind="convention",
+        sentence=f"tau of {name} is 0",
+        repair=f"compute tau of {name}",
+        apply=partial(_tau_zero, columns=joint.v),
+        joint=name,
+    )
+    if model.nv == len(joint.v):
+        return
+    yield Hypothesis(
+        id="sign of tau at a joint",
+        kind="convention",
+        sentence=f"tau of {name} has the opposite sign",
+        repair=f"multiply tau of {name} by -1",
+        apply=partial(_tau_negative, columns=joint.v),
+        joint=name,
+    )
+    yield Hypothesis(
+        id="factor of tau at a joint",
+        kind="convention",
+        sentence=f"tau of {name} is multiplied by a factor, such as a gear ratio",
+        repair=f"give tau of {name} at the joint, in N m or N",
+        apply=partial(_tau_factor, columns=joint.v),
+        joint=name,
+        start=(2.0,),
+        neutral=(1.0,),
+        values=_factor(FORCES | WORDS),
+    )
+
+
+def _tau_zero(variant: Variant, x: Sequence[float], columns: Sequence[int]) -> Variant:
+    return tau_scaled(variant, dict.fromkeys(columns, 0.0))
+
+
+def _tau_negative(variant: Variant, x: Sequence[float], columns: Sequence[int]) -> Variant:
+    return tau_scaled(variant, dict.fromkeys(columns, -1.0))
+
+
+def _reversed(variant: Variant, x: Sequence[float], joint: Slots) -> Variant:
+    q, v = dict.fromkeys(joint.q, -1.0), dict.fromkeys(joint.v, -1.0)
+    return tau_scaled(scaled(variant, q, v, v), v)
+
+
+def _zeros(model: Model, joint: Slots) -> Iterator[Hypothesis]:
+    """Another zero of a joint."""
+    yield Hypothesis(
+        id="joint offset",
+        kind="convention",
+        sentence=f"the zero of {joint.name} is elsewhere",
+        repair=f"count q of {joint.name} from the zero of the robot's file",
+        apply=partial(_offset, joint=joint),
+        joint=joint.name,
+        start=(0.3,) if joint.angles else (0.1,),
+        neutral=(0.0,),
+        values=lambda x: {"offset": x[0]} | ({"degrees": x[0] / DEGREE} if joint.angles else {}),
+        line=line_of(model, joint=joint.name),
+    )
+    for degrees in GIVEN_QUARTERS if joint.angles else ():
+        yield Hypothesis(
+            id=f"joint offset of {degrees} degrees",
+            kind="convention",
+            sentence=f"the zero of {joint.name} is {degrees} degrees off",
+            repair=f"subtract {degrees} degrees from q of {joint.name}",
+            apply=partial(_offset_by, joint=joint, offset=degrees * DEGREE),
+            joint=joint.name,
+            values=partial(_degrees, degrees=degrees),
+            line=line_of(model, joint=joint.name),
+        )
+
+
+def _degrees(x: Sequence[float], degrees: int) -> Mapping[str, Any]:
+    return {"offset": degrees * DEGREE, "degrees": degrees}
+
+
+def _offset(variant: Variant, x: Sequence[float], joint: Slots) -> Variant:
+    return _offset_by(variant, x, joint, float(x[0]))
+
+
+def _offset_by(variant: Variant, x: Sequence[float], joint: Slots, offset: float) -> Variant:
+    def inputs(batch: Batch) -> Batch:
+        q = batch.q.copy()
+        q[:, joint.q] += offset
+        return replace(batch, q=q)
+
+    return variant.with_input(inputs)

@@ -1,0 +1,166 @@
+"""Hypotheses on frame, point and sign of F, N, f and n; they show where a program gives wrenches."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.model import Model
+from rttrr_pin.diagnosis.altering import with_gravity
+from rttrr_pin.diagnosis.hypothesis import Hypothesis
+from rttrr_pin.diagnosis.kinematics import in_base, on_parents, turned, turned_back
+from rttrr_pin.diagnosis.variant import Values, Variant
+from rttrr_pin.implementations.protocol import Batch
+
+Told = Callable[[Variant, Batch, Values], Values]
+"""What the program says in place of its values: the batch is that of the recursion."""
+
+
+@dataclass(frozen=True, slots=True)
+class WrenchSlip:
+    """How a program may tell wrenches otherwise."""
+
+    id: str
+    sentence: str
+    repair: str
+    told: Told
+
+
+def wrench_conventions(model: Model) -> Iterator[Hypothesis]:
+    """All of them."""
+    for slip in SLIPS if model.links else ():
+        yield Hypothesis(slip.id, "convention", slip.sentence, slip.repair, partial(_apply, told=slip.told))
+
+
+def _apply(variant: Variant, x: Sequence[float], told: Told) -> Variant:
+    return variant.with_output(lambda batch, values: {**values, **told(variant, variant.given(batch), values)})
+
+
+def _turned(keys: str, frames: Callable[[Model, Batch], tuple[Array, Array]]) -> Told:
+    """In the axes of another frame."""
+
+    def told(variant: Variant, batch: Batch, values: Values) -> Values:
+        R, _ = frames(variant.model, batch)
+        return {key: turned(R, values[key]) for key in keys}
+
+    return told
+
+
+def _sign(keys: str) -> Told:
+    return lambda variant, batch, values: {key: -values[key] for key in keys}
+
+
+def _coms(model: Model) -> Array:
+    return np.array([link.com for link in model.links])
+
+
+def _n_about_com(variant: Variant, batch: Batch, values: Values) -> Values:
+    return {"n": values["n"] - np.cross(_coms(variant.model), values["f"])}
+
+
+def _N_about_origin(variant: Variant, batch: Batch, values: Values) -> Values:
+    return {"N": values["N"] + np.cross(_coms(variant.model), values["F"])}
+
+
+def _n_about_parent(variant: Variant, batch: Batch, values: Values) -> Values:
+    R, p = on_parents(variant.model, batch)
+    return {"n": values["n"] + np.cross(turned_back(R, p), values["f"])}
+
+
+def _n_about_base(variant: Variant, batch: Batch, values: Values) -> Values:
+    R, p = in_base(variant.model, batch)
+    return {"n": values["n"] + np.cross(turned_back(R, p), values["f"])}
+
+
+def _spatial_in_base(variant: Variant, batch: Batch, values: Values) -> Values:
+    """In base axes, and n about the origin of the base."""
+    R, p = in_base(variant.model, batch)
+    f, n = turned(R, values["f"]), turned(R, values["n"])
+    return {"f": f, "n": n + np.cross(p, f)}
+
+
+def _without_gravity(keys: str) -> Told:
+    """Those of the recursion without gravity."""
+
+    def told(variant: Variant, batch: Batch, values: Values) -> Values:
+        light = replace(with_gravity(variant, np.zeros(3)), inputs=())
+        results = light.evaluate(batch)
+        return {key: results[key] for key in keys}
+
+    return told
+
+
+def _exchanged(variant: Variant, batch: Batch, values: Values) -> Values:
+    return {"F": values["N"], "N": values["F"], "f": values["n"], "n": values["f"]}
+
+
+def _of_parent_side(variant: Variant, batch: Batch, values: Values) -> Values:
+    """On the parent, in its axes: minus R f and minus R n."""
+    R, _ = on_parents(variant.model, batch)
+    return {key: -turned(R, values[key]) for key in "fn"}
+
+
+AXES = "the axes of each link's own frame"
+
+SLIPS = (
+    *(
+        WrenchSlip(
+            f"{name} in base axes", f"{name} are in base axes", f"turn them by R^T to {AXES}", _turned(keys, in_base)
+        )
+        for name, keys in (("F, N, f and n", "FNfn"), ("f and n", "fn"), ("F and N", "FN"))
+    ),
+    *(
+        WrenchSlip(
+            f"{name} in the parent's axes", f"{name} are in the axes of the parent's frame",
+            f"turn them by R^T to {AXES}", _turned(keys, on_parents),
+        )
+        for name, keys in (("F, N, f and n", "FNfn"), ("f and n", "fn"), ("F and N", "FN"))
+    ),
+    WrenchSlip(
+        "sign of f and n", "f and n have the opposite sign: they are what the link exerts on its parent",
+        "negate f and n: they are what the parent exerts on the link", _sign("fn"),
+    ),
+    WrenchSlip(
+        "sign of f and n, on the parent",
+        "f and n are what the link exerts on its parent, in the parent's axes",
+        f"negate f and n, and turn them by R^T to {AXES}", _of_parent_side,
+    ),
+    WrenchSlip(
+        "sign of F and N", "F and N have the opposite sign, as d'Alembert's inertia forces",
+        "negate F and N", _sign("FN"),
+    ),
+    WrenchSlip(
+        "n about the COM", "n is about the centre of mass of the link", "n - r_C x f is: add r_C x f", _n_about_com
+    ),
+    WrenchSlip(
+        "n about the parent's origin", "n is about the origin of the parent's frame",
+        "take n about the origin of the link's own frame", _n_about_parent,
+    ),
+    WrenchSlip(
+        "n about the base", "n is about the origin of the base", "take n about the origin of the link's own frame",
+        _n_about_base,
+    ),
+    WrenchSlip(
+        "f and n in base axes about the base", "f and n are in base axes, and n about the origin of the base",
+        f"turn them to {AXES}, and take n about its origin", _spatial_in_base,
+    ),
+    WrenchSlip(
+        "N about the origin", "N is about the origin of the link's frame", "N is about the centre of mass",
+        _N_about_origin,
+    ),
+    WrenchSlip(
+        "F without gravity", "F is without gravity: mass times acceleration alone",
+        "let the base accelerate upwards: F is m (v_dot_C - g)", _without_gravity("F"),
+    ),
+    WrenchSlip(
+        "F, N, f and n without gravity", "F, N, f and n are without gravity, tau is with it",
+        "let the base accelerate upwards", _without_gravity("FNfn"),
+    ),
+    WrenchSlip(
+        "moments before forces", "F and N, f and n are exchanged", "give the force first", _exchanged
+    ),
+)  # fmt: skip
