@@ -92,6 +92,12 @@ def _com_of_parent(model: Model, i: int, other: int) -> Mapping[int, Link]:
     return {i: replace(model.links[i], com=joint.R.T @ (model.links[other].com - joint.p))}
 
 
+def _tensor_not_turned(model: Model, i: int, other: int) -> Mapping[int, Link]:
+    """The tensor, in the axes of the link itself, taken for one in those of the link that carries it."""
+    R, link = model.joints[i].R, model.links[i]
+    return {i: replace(link, inertia=symmetric(R.T @ link.inertia @ R))}
+
+
 def _without_parallel_axes(model: Model, i: int, other: int) -> Mapping[int, Link]:
     """The tensor about the link's own centre of mass added to the other's, that about the other's origin being due."""
     joint, link, carrier = model.joints[i], model.links[i], model.links[other]
@@ -122,6 +128,11 @@ LUMPED = (
         "fixed link without parallel axes",
         "the tensor of {link} about its own centre of mass is added to that of {other}",
         "move the tensor of {link} to the origin of {other}: add m (d.d 1 - d d^T)", _without_parallel_axes,
+    ),
+    PairSlip(
+        "tensor of a fixed link not turned",
+        "the tensor of {link} is added to that of {other} without being turned to its axes",
+        "turn the tensor of {link} by R of its fixed joint: R I R^T", _tensor_not_turned,
     ),
 )  # fmt: skip
 
