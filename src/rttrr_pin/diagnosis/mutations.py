@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import copy
 import inspect
+import linecache
 import textwrap
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -21,7 +22,7 @@ import rttrr_pin
 from rttrr_pin.core import algebra, dynamics, newton_euler
 from rttrr_pin.core.joints import JOINT_TYPES, JointType
 from rttrr_pin.core.joints.base import Body
-from rttrr_pin.diagnosis.operators import Errors, errors, guard_of, inner_sums, rewritten, statement_with
+from rttrr_pin.diagnosis.operators import Errors, Syntax, errors, guard_of, rewritten
 
 Dynamics: TypeAlias = Callable[..., dynamics.Result]
 """Has the signature of `core.dynamics.dynamics`."""
@@ -107,21 +108,31 @@ def is_local(mutation: Mutation) -> bool:
     return bool(guard_of(ast.parse(mutation.original)))
 
 
+def place_of(mutation: Mutation) -> tuple[Syntax, ast.AST]:
+    """The syntax tree of the function that has the error, and the node there."""
+    syntax = _syntax(functions()[mutation.function])
+    return syntax, syntax.nodes[mutation.node]
+
+
+def source_line(mutation: Mutation, line: int) -> str:
+    """A line of the file that has the error, with its comment."""
+    return linecache.getline(inspect.getfile(functions()[mutation.function]), line)
+
+
 def generated(function: FunctionType, errors: Errors = errors) -> Iterator[Mutation]:
     """All errors of one function, also those that change no number."""
-    source, first = _source(function)
-    nodes = list(ast.walk(ast.parse(source)))
-    inner, statements = inner_sums(nodes), _statements(nodes)
+    syntax = _syntax(function)
     file = Path(inspect.getfile(function)).relative_to(Path(rttrr_pin.__file__).parent).as_posix()
+    originals = {id(x): ast.unparse(x) for x in syntax.nodes if isinstance(x, ast.stmt)}
     seen: dict[str, int] = {}
     changed: set[tuple[int, str]] = set()
-    for k, node in enumerate(nodes):
-        for choice, error in enumerate(errors(node, function.__name__, id(node) in inner)):
-            statement = statements[id(node)]
+    for k, node in enumerate(syntax.nodes):
+        for choice, error in enumerate(errors(node, syntax.name, syntax.inner(node))):
+            statement = syntax.statement(node)
             name = f"{function.__qualname__}: {error.operator} {error.expression}"
-            what = (function.__qualname__, error.operator, error.expression, ast.unparse(statement))
-            one = Mutation(name, *what, "", file, first + error.line - 1, k, choice)
-            text = statement_with(one, node, statement, function.__name__, errors)
+            what = (function.__qualname__, error.operator, error.expression, originals[id(statement)])
+            one = Mutation(name, *what, "", file, syntax.first + error.line - 1, k, choice)
+            text = ast.unparse(rewritten(syntax, [one], errors, statement))
             if (id(statement), text) in changed:
                 continue
             changed.add((id(statement), text))
@@ -141,11 +152,10 @@ def functions() -> dict[str, FunctionType]:
 
 def compiled(function: str, mutations: Sequence[Mutation], errors: Errors = errors) -> CodeType:
     """The code of a function with all of these errors; see `rewritten` for what becomes of their links."""
-    source, _ = _source(functions()[function])
-    name = function.rpartition(".")[2]
-    tree = rewritten(source, name, mutations, errors)
+    syntax = _syntax(functions()[function])
+    tree: Any = rewritten(syntax, mutations, errors)
     code = compile(tree, f"<{function} with an error>", "exec", annotations.compiler_flag, dont_inherit=True)
-    return next(x for x in code.co_consts if isinstance(x, CodeType) and x.co_name == name)
+    return next(x for x in code.co_consts if isinstance(x, CodeType) and x.co_name == syntax.name)
 
 
 def mutated(mutations: Sequence[Mutation]) -> Dynamics:
@@ -266,12 +276,6 @@ def _mutations(link: int | None = None) -> tuple[Mutation, ...]:
 
 
 @cache
-def _source(function: FunctionType) -> tuple[str, int]:
-    """The source of a function, and the line where it begins."""
+def _syntax(function: FunctionType) -> Syntax:
     lines, first = inspect.getsourcelines(function)
-    return textwrap.dedent("".join(lines)), first
-
-
-def _statements(nodes: Sequence[ast.AST]) -> dict[int, ast.stmt]:
-    """The innermost statement that each node is in, by its `id`; outer ones come first."""
-    return {id(x): node for node in nodes if isinstance(node, ast.stmt) for x in ast.walk(node)}
+    return Syntax.of(textwrap.dedent("".join(lines)), function.__name__, first)

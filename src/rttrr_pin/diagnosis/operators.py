@@ -111,31 +111,56 @@ def summed(parts: Sequence[tuple[str, str]]) -> str:
     return f"({first})" + " * -1" * (sign == "-") + "".join(f" {sign} ({part})" for sign, part in others)
 
 
-def inner_sums(nodes: Sequence[ast.AST]) -> set[int]:
-    """The `id` of each sum that is the beginning of a longer one."""
-    return {id(x.left) for x in nodes if isinstance(x, ast.BinOp) and is_sum(x) and is_sum(x.left)}
+@dataclass(frozen=True, eq=False)
+class Syntax:
+    """The syntax tree of one function; it is never changed.
+
+    Attributes:
+        name: of the function.
+        first: the line of its file where it begins.
+        tree: a module with the function alone.
+        nodes: in the order of `ast.walk`.
+        parents: by the `id` of each node; none for the tree.
+    """
+
+    name: str
+    first: int
+    tree: ast.Module
+    nodes: tuple[ast.AST, ...]
+    parents: Mapping[int, ast.AST]
+
+    @classmethod
+    def of(cls, source: str, name: str, first: int = 1) -> Syntax:
+        """That of a function's source."""
+        tree = ast.parse(source)
+        nodes = tuple(ast.walk(tree))
+        return cls(name, first, tree, nodes, {id(x): node for node in nodes for x in ast.iter_child_nodes(node)})
+
+    def inner(self, node: ast.AST) -> bool:
+        """Whether a node is the beginning of a longer sum."""
+        above = self.parents.get(id(node))
+        return isinstance(above, ast.BinOp) and is_sum(above) and above.left is node
+
+    def statement(self, node: ast.AST) -> ast.AST:
+        """The innermost statement that a node is in."""
+        return next(x for x in self.around(node) if isinstance(x, ast.stmt | ast.Module))
+
+    def around(self, node: ast.AST) -> Iterator[ast.AST]:
+        """The node and those that it is in, the tree last."""
+        above: ast.AST | None = node
+        while above is not None:
+            yield above
+            above = self.parents.get(id(above))
 
 
-def rewritten(source: str, function: str, edits: Sequence[Edit], errors: Errors = errors) -> ast.Module:
-    """The syntax tree of a function with all of these errors.
+def rewritten(syntax: Syntax, edits: Sequence[Edit], errors: Errors = errors, of: ast.AST | None = None) -> ast.AST:
+    """The syntax tree of a function with all of these errors; of one node of it, where one is given.
 
     Where two are about one place and do not go together, such as a term that is dropped and negated, the first counts.
     The link of an edit counts in statements that go through all links; elsewhere it does not.
     """
-    tree = ast.parse(source)
-    nodes = list(ast.walk(tree))
-    rewriting = _Rewriting(function, errors, inner_sums(nodes))
-    for edit in edits:
-        rewriting.edits.setdefault(id(nodes[edit.node]), []).append(edit)
-    return ast.fix_missing_locations(rewriting.visit(tree))  # type: ignore[no-any-return]
-
-
-def statement_with(edit: Edit, node: ast.AST, statement: ast.stmt, function: str, errors: Errors = errors) -> str:
-    """How a statement reads with an error at a node of it."""
-    inside = list(ast.walk(statement))
-    rewriting = _Rewriting(function, errors, inner_sums(inside))
-    rewriting.edits = {id(node): [edit]}
-    return ast.unparse(rewriting.at(statement, None))
+    result: ast.AST = _Rewriting(syntax, edits, errors).rewritten(of or syntax.tree, tuple(edits))
+    return result
 
 
 def guard_of(statement: ast.AST) -> str:
@@ -182,60 +207,72 @@ def _of_name(name: str, function: str, line: int) -> Iterator[Error]:
         yield Error(f"take {other} for", name, other, line)
 
 
-class _Rewriting(ast.NodeTransformer):
-    """Makes the errors, those inside of an expression first."""
+class _Rewriting:
+    """Copies what has an error inside, and shares the rest."""
 
-    def __init__(self, function: str, errors: Errors, inner: set[int]) -> None:
-        self.function, self.errors, self.inner = function, errors, inner
-        self.edits: dict[int, list[Edit]] = {}
+    def __init__(self, syntax: Syntax, edits: Sequence[Edit], errors: Errors) -> None:
+        self.syntax, self.errors = syntax, errors
+        self.touched: dict[int, list[Edit]] = {}
+        """Of each node with errors in it, which."""
+        for edit in edits:
+            for node in syntax.around(syntax.nodes[edit.node]):
+                self.touched.setdefault(id(node), []).append(edit)
 
-    def visit(self, node: ast.AST) -> Any:
-        if isinstance(node, ast.stmt) and not hasattr(node, "body") and (guard := guard_of(node)):
-            return self._at_links(node, guard)
-        return self._rewritten(node)
+    def rewritten(self, node: ast.AST, active: tuple[Edit, ...]) -> Any:
+        """A node with those of the errors that are active."""
+        inside = [edit for edit in self.touched.get(id(node), ()) if edit in active]
+        if not inside:
+            return node
+        links = {edit.link for edit in inside} - {None}
+        if links and isinstance(node, ast.stmt) and not hasattr(node, "body") and (guard := guard_of(node)):
+            return self._at_links(node, inside, guard)
+        return self._edited(node, tuple(inside))
 
-    def _at_links(self, statement: ast.stmt, guard: str) -> ast.stmt:
+    def _at_links(self, statement: ast.stmt, edits: Sequence[Edit], guard: str) -> ast.stmt:
         """The statement; at the links that have errors of their own, another."""
-        inside = list(ast.walk(statement))
-        links = {edit.link for x in inside for edit in self.edits.get(id(x), ())} - {None}
-        if not links:
-            return self._rewritten(statement)  # type: ignore[no-any-return]
-        result = self.at(statement, None)
-        for link in links:
+
+        def at(link: int | None) -> Any:
+            return self._edited(statement, tuple(edit for edit in edits if edit.link in (None, link)))
+
+        result: ast.stmt = at(None)
+        for link in {edit.link for edit in edits} - {None}:
             test = ast.parse(f"{guard} == {link}", mode="eval").body
-            result = ast.If(test=test, body=[self.at(statement, link)], orelse=[result])
-        return result
+            result = ast.If(test=test, body=[at(link)], orelse=[result])
+        return ast.fix_missing_locations(ast.copy_location(result, statement))
 
-    def at(self, statement: ast.stmt, link: int | None) -> ast.stmt:
-        """A copy of the statement as it reads at one link; at any other for None."""
-        own = copy.deepcopy(statement)
-        pairs = list(zip(ast.walk(statement), ast.walk(own), strict=True))
-        rewriting = _Rewriting(self.function, self.errors, {id(y) for x, y in pairs if id(x) in self.inner})
-        for x, y in pairs:
-            rewriting.edits[id(y)] = [edit for edit in self.edits.get(id(x), ()) if edit.link in (None, link)]
-        return rewriting._rewritten(own)  # type: ignore[no-any-return]
-
-    def _rewritten(self, node: ast.AST) -> Any:
-        inner, edits = id(node) in self.inner, self.edits.get(id(node), [])
+    def _edited(self, node: ast.AST, active: tuple[Edit, ...]) -> Any:
+        """The node with errors inside, those of its parts first."""
+        edits = [edit for edit in active if self.syntax.nodes[edit.node] is node]
         if not edits:
-            return self.generic_visit(node)
-        options = list(self.errors(node, self.function, inner))
+            return self._copied(node, active)
+        inner = self.syntax.inner(node)
+        options = list(self.errors(node, self.syntax.name, inner))
         chosen = [options[edit.choice] for edit in edits]
         changed = {error.term: error.operator for error in chosen[::-1] if error.term is not None}
         if changed and isinstance(node, ast.expr):
-            parts = [(sign, ast.unparse(self.visit(term))) for sign, term in terms(node)]
+            parts = [(sign, ast.unparse(self.rewritten(term, active))) for sign, term in terms(node)]
             return _placed(_sum_with(parts, changed), node)
-        node = self.generic_visit(node)
-        for option in list(self.errors(node, self.function, inner))[edits[0].choice :][:1]:
+        result = self._copied(node, active)
+        for option in list(self.errors(result, self.syntax.name, inner))[edits[0].choice :][:1]:
             if option.operator == chosen[0].operator:
                 return _placed(option.text, node)
-        return node
+        return result
+
+    def _copied(self, node: ast.AST, active: tuple[Edit, ...]) -> ast.AST:
+        """A copy of a node with errors in its parts."""
+        result = copy.copy(node)
+        for name, value in ast.iter_fields(node):
+            if isinstance(value, list):
+                setattr(result, name, [self.rewritten(x, active) if isinstance(x, ast.AST) else x for x in value])
+            elif isinstance(value, ast.AST):
+                setattr(result, name, self.rewritten(value, active))
+        return result
 
 
 def _placed(text: str, node: ast.AST) -> ast.AST:
     """The text as what stands in the place of a node."""
-    statement = ast.parse(text).body[0]
-    if isinstance(node, ast.stmt):
-        return statement
-    assert isinstance(statement, ast.Expr)
-    return ast.keyword(node.arg, statement.value) if isinstance(node, ast.keyword) else statement.value
+    statement: ast.AST = ast.parse(text).body[0]
+    if not isinstance(node, ast.stmt):
+        assert isinstance(statement, ast.Expr)
+        statement = ast.keyword(node.arg, statement.value) if isinstance(node, ast.keyword) else statement.value
+    return ast.fix_missing_locations(ast.copy_location(statement, node))
