@@ -36,4 +36,4 @@ def test_a_tensor_that_is_not_turned_is_what_fusing_without_turning_gives() -> N
     def own(model: Model) -> Hypothesis:
         return next(one for one in neighbours(model) if one.id == "tensor of a fixed link not turned")
 
-    assert_same("arm_with_gripper", own, planted.merged_without_turning(text("arm_with_gripper"), "gripper"))
+    assert_same("arm_with_gripper", own, planted.merged_without_turning(text("arm_with_gripper"), "gripper_mount"))

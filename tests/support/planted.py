@@ -65,10 +65,10 @@ def masses_in_grams(urdf: str) -> Program:
     return rnea(own)
 
 
-def merged_without_turning(urdf: str, link: str) -> Program:
+def merged_without_turning(urdf: str, fixed_joint: str) -> Program:
     """A fixed link's tensor added to that of the link which carries it, and not turned to its axes."""
     own = model(urdf)
-    frame = own.frames[own.getFrameId(link)]
+    frame = own.frames[own.getFrameId(fixed_joint)]
     right = frame.placement.act(frame.inertia)
     wrong = pin.Inertia(right.mass, right.lever, frame.inertia.inertia)
     total = own.inertias[frame.parentJoint]
