@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from rttrr_pin.core.wrench import LinkWrenches as LinkWrenches
     from rttrr_pin.core.wrench import Wrench as Wrench
     from rttrr_pin.derivation import derive as derive
+    from rttrr_pin.diagnosis import compare_robots as compare_robots
     from rttrr_pin.errors import InputError as InputError
     from rttrr_pin.errors import RttrrError as RttrrError
     from rttrr_pin.exact import Enclosures as Enclosures
@@ -56,6 +57,7 @@ __getattr__, __dir__, __all__ = lazy(
         "core.statics": ("WrenchEstimate",),
         "core.wrench": ("LinkWrenches", "Wrench"),
         "derivation": ("derive",),
+        "diagnosis": ("compare_robots",),
         "errors": ("InputError", "RttrrError"),
         "exact": ("Enclosures",),
         "implementations": ("Batch", "Evaluation", "Implementation"),

@@ -26,6 +26,7 @@ COMMANDS = {
     "search": "rttrr_pin.validation.command:search",
     "sample": "rttrr_pin.diagnosis.sample_command:sample",
     "laws": "rttrr_pin.laws.command:laws",
+    "compare": "rttrr_pin.diagnosis.compare_command:compare",
     "audit": "rttrr_pin.auditing.command:audit",
     "derive": "rttrr_pin.derivation.command:derive",
     "inspect": "rttrr_pin.inspection.command:inspect",

@@ -47,10 +47,13 @@ PROGRAMS = [page for page in PAGES if page == README or ("python" in dict(blocks
 
 @pytest.fixture
 def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A folder with the files that the documents call the reader's own: the bundled arm, and one with a comma in a mass."""
+    """The files that the documents call the reader's own: the bundled arm, one with a comma in a mass, one that differs."""
     text = bundled()["rttrr"].read_text()
     (tmp_path / "my_arm.urdf").write_text(text)
     (tmp_path / "bad_arm.urdf").write_text(re.sub(r'<mass value="(\d+)\.', r'<mass value="\1,', text, count=1))
+    other = text.replace('value="3.75387"', 'value="3.9"').replace('ixy="-5.97049e-05"', 'ixy="5.97049e-05"')
+    other = other.replace('upper="0.32"', 'upper="0.3"').replace("joint_", "axis_")
+    (tmp_path / "other_arm.urdf").write_text(other)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "80")
     return tmp_path

@@ -120,6 +120,10 @@ def calls() -> dict[str, Call]:
             rttrr_pin.check_laws,
             {"robot": robot, "subject": "kernel", "n_states": 2, **STATES, "select": ("E",)},
         ),
+        "compare_robots": (
+            rttrr_pin.compare_robots,
+            {"a": robot, "b": "trtrr", "n_states": 3, "seed": 0, "progress": None},
+        ),
         "inspect": (rttrr_pin.inspect, {"robot": robot, "folder": None, "select": "P", "ignore": ()}),
         "derive": (
             rttrr_pin.derive,
@@ -136,8 +140,7 @@ NAMES = (
     *("wrench_torque", "WrenchEstimate", "with_joint_effects", "with_payload_body", "with_locked"),
     *("LinkWrenches", "Wrench", "RandomPayload", "JointEffects", "Joint", "Limits", "Mimic", "Link", "Model"),
     *("validate", "compare_state", "search_worst_state", "check_laws", "inspect", "derive", "read_publication"),
-    "audit",
-    "sample_states",
+    *("audit", "compare_robots", "sample_states"),
     *(
         "BaseParameters.of",
         "BaseParameters.regressor",

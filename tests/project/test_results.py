@@ -68,6 +68,7 @@ def objects() -> dict[str, Any]:
         "Sample": sample_states(robot, 10),
         "LawReport": rttrr_pin.check_laws(robot, n_states=np.int64(2), seed=np.int64(2)),  # type: ignore[arg-type]
         "Inspection": rttrr_pin.inspect(robot),
+        "Comparison": rttrr_pin.compare_robots(robot, "trtrr", np.int64(3), seed=np.int64(2)),  # type: ignore[arg-type]
         "Derivation": rttrr_pin.derive(robot, "g"),
         "Derivation in steps": rttrr_pin.derive(robot, ("g",), form="stepwise", payload_link="tool"),
         "Publication": publication,
@@ -87,6 +88,7 @@ NAMES = (
         "Derivation in steps",
         "Publication",
         "AuditResult",
+        "Comparison",
     ),
 )
 
@@ -121,7 +123,7 @@ def test_objects_can_be_compared_and_shown(name: str) -> None:
 
 AS_DATA = (
     *("Validation", "Validation of nan", "StateReport", "StateReport of nan", "WorstCase", "LawReport", "Inspection"),
-    *("Derivation", "Derivation in steps", "AuditResult", "Enclosures", "BaseParameters"),
+    *("Comparison", "Derivation", "Derivation in steps", "AuditResult", "Enclosures", "BaseParameters"),
 )
 
 

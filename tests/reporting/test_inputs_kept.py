@@ -41,8 +41,11 @@ FILES = {
 COMMANDS = {
     "rod.obj": ["inspect arm.urdf --json", "inspect arm.urdf --fix"],
     "part.xacro": ["validate arm.xacro --xacro --states 5 --json", "inspect arm.xacro --xacro --sarif"],
-    "part.xml": ["laws arm.xml --states 5 --json", "sample arm.xml -n 5 -o"],
-    "one/arm.urdf": ["validate one --states 5 --json", "inspect one --junit", "derive one --c", "state one --json"],
+    "part.xml": ["laws arm.xml --states 5 --json", "sample arm.xml -n 5 -o", "compare arm.urdf arm.xml --json"],
+    "one/arm.urdf": [
+        *("validate one --states 5 --json", "inspect one --junit", "derive one --c", "state one --json"),
+        "compare arm.urdf one --json",
+    ],
     "arm.urdf": ["audit whole.toml --json", "audit parts.toml --latex"],
     "symbols.toml": ["audit parts.toml --html"],
     "equations.toml": ["audit parts.toml --markdown"],

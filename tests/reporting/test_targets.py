@@ -22,6 +22,8 @@ WRITING: dict[str, Command] = {
     "search": lambda robot, out: ["search", str(robot), "--json", out],
     "laws": lambda robot, out: ["laws", str(robot), "--json", out],
     "sample": lambda robot, out: ["sample", str(robot), "-o", out],
+    "compare": lambda robot, out: ["compare", str(robot), "rttrr", "--json", out],
+    "compare another": lambda robot, out: ["compare", "rttrr", str(robot), "--json", out],
     "inspect": lambda robot, out: ["inspect", str(robot), "--json", out],
     "derive": lambda robot, out: ["derive", str(robot), "--latex", out],
     "audit": lambda robot, out: ["audit", str(robot), "--html", out],

@@ -64,6 +64,7 @@ COMMANDS: dict[str, Callable[[Path], list[str]]] = {
     "search": lambda folder: ["search", f"{folder}/arm.xacro", "--evaluations", "100"],
     "laws": lambda folder: ["laws", f"{folder}/arm.xacro", "--states", "5"],
     "sample": lambda folder: ["sample", f"{folder}/arm.xacro", "-n", "5"],
+    "compare": lambda folder: ["compare", f"{folder}/arm.urdf", f"{folder}/arm.xacro"],
     "derive": lambda folder: ["derive", f"{folder}/arm.xacro"],
     "inspect": lambda folder: ["inspect", f"{folder}/arm.xacro"],
     "audit": lambda folder: ["audit", f"{folder}/paper.toml"],

@@ -11,8 +11,17 @@ import numpy as np
 
 from rttrr_pin.core.arguments import whole_number
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.diagnosis.descriptions import Difference
-from rttrr_pin.diagnosis.effects_of import Effect, Progress, Torques, all_together, effect, effect_of, first_torques, rms
+from rttrr_pin.diagnosis.difference import Difference
+from rttrr_pin.diagnosis.effects_of import (
+    Effect,
+    Progress,
+    Torques,
+    all_together,
+    effect,
+    effect_of,
+    first_torques,
+    rms,
+)
 from rttrr_pin.diagnosis.effects_of import torques as torques_of
 from rttrr_pin.diagnosis.matched import Matched, listed, matched, notes_of
 from rttrr_pin.errors import InputError
@@ -96,7 +105,9 @@ class Comparison(Summarised):
     @property
     def free(self) -> tuple[Effect, ...]:
         """Joints that move by themselves in one of the two and follow another in the other."""
-        return tuple(e for e in self.effects if e.difference.kind == "mimic" and None in (e.difference.a, e.difference.b))
+        return tuple(
+            e for e in self.effects if e.difference.kind == "mimic" and None in (e.difference.a, e.difference.b)
+        )
 
     @property
     def passed(self) -> bool:
@@ -113,14 +124,18 @@ class Comparison(Summarised):
         parts = []
         if self.mattering:
             first = self.mattering[0]
-            number = "1 difference changes torques" if len(self.mattering) == 1 else (
-                f"{len(self.mattering)} differences change torques, most of all"
+            number = (
+                "1 difference changes torques"
+                if len(self.mattering) == 1
+                else (f"{len(self.mattering)} differences change torques, most of all")
             )
             parts.append(f"{number}: {first.difference.where}, {first.worst:.3g} of the torque of {first.joint} (rms)")
         if lone := (*self.only_a, *self.only_b):
             parts.append(f"without a counterpart: {listed(lone)}")
         if self.free and not self.mattering:
-            parts.append(f"follows another joint in one of them: {listed([str(e.difference.joint) for e in self.free])}")
+            parts.append(
+                f"follows another joint in one of them: {listed([str(e.difference.joint) for e in self.free])}"
+            )
         if self.remainder:
             name = max(self.remainder, key=self.remainder.__getitem__)
             parts.append(f"{self.remainder[name]:.3g} of {name} (rms) is explained by none of them")
@@ -217,7 +232,9 @@ def _joints(both: Matched, torques: Torques) -> dict[str, JointTorque]:
     partner = dict(both.pairs)
     motion = {partner[name]: tuple(signs[name] * x for x in own) for name, own in torques.motion.items()}
     tau = torques_of(both.b, motion, [partner[name] for name in torques.joints])  # type: ignore[arg-type]
-    own_signs = [signs[joint.name] for joint in both.a.model.joints if joint.name in torques.joints for _ in range(joint.nv)]
+    own_signs = [
+        signs[joint.name] for joint in both.a.model.joints if joint.name in torques.joints for _ in range(joint.nv)
+    ]
     tau = tau * np.array(own_signs)
     explained = torques.of(all_together(both.a, both.differences))
     if not np.isfinite(tau).all():
@@ -226,6 +243,4 @@ def _joints(both: Matched, torques: Torques) -> dict[str, JointTorque]:
     most: Array = np.abs(left).max(axis=0, initial=0.0)
     remainder = np.where(most <= REMAINDER * torques.bound, 0.0, rms(left))
     columns = zip(torques.rms, rms(change), np.abs(change).max(axis=0, initial=0.0), remainder, strict=True)
-    return {
-        label: JointTorque(*(float(x) for x in own)) for label, own in zip(torques.labels, columns, strict=True)
-    }
+    return {label: JointTorque(*(float(x) for x in own)) for label, own in zip(torques.labels, columns, strict=True)}

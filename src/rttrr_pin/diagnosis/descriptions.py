@@ -2,71 +2,15 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field, fields, replace
+from collections.abc import Iterator
+from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
-from rttrr_pin.core.arrays import Array, angles_of
-from rttrr_pin.core.joint import EFFECTS, Limits
 from rttrr_pin.core.model import Link
-from rttrr_pin.diagnosis.rigid_tree import Body, Member, Pose, RigidTree, link_of
-from rttrr_pin.diagnosis.tolerance import Level, Tolerance
-
-Change = Callable[[RigidTree], RigidTree]
-"""The first robot with one number of the second."""
-
-UNITS = {
-    "mass": "kg",
-    "centre of mass": "m",
-    "inertia": "kg m^2",
-    "position": "m",
-    "orientation": "rad, rpy",
-    "gravity": "m/s^2",
-    "link": "kg",
-}
-"""Of the values of a difference, by its kind; of others those of the joint's coordinate."""
-
-
-@dataclass(frozen=True, slots=True)
-class Difference:
-    """One thing that two descriptions of a robot say differently.
-
-    Attributes:
-        kind: "mass", "centre of mass", "inertia" (about the centre of mass), "link" (only one has it); "position",
-            "orientation", "axis", "type", "limits", "mimic", "armature", "damping", "friction"; "gravity".
-        link: the link that it is about; None where it is about a joint.
-        joint: the joint that carries it, or that it is about; None on the base.
-        a: what the first says, in its frames: a number, a list of numbers, a word, or None.
-        b: what the second says, in the frames and coordinates of the first.
-        relative: the size of the difference; of directions in rad, of anything else relative to the larger number.
-        rounding: whether digits that were printed explain it.
-        unit: of a and b.
-        change: the first robot with this number of the second; None where no torque can depend on it.
-    """
-
-    kind: str
-    link: str | None
-    joint: str | None
-    a: Any
-    b: Any
-    relative: float
-    rounding: bool = False
-    unit: str = ""
-    change: Change | None = field(default=None, compare=False, repr=False)
-
-    @property
-    def where(self) -> str:
-        """What it is about, in words."""
-        if self.link is not None:
-            return f"{self.kind} of {self.link}"
-        return self.kind if self.joint is None else f"{self.kind} of {self.joint}"
-
-    def to_dict(self) -> dict[str, Any]:
-        """All but the change, as data for JSON."""
-        return {own.name: getattr(self, own.name) for own in fields(self) if own.name != "change"}
+from rttrr_pin.diagnosis.difference import Change, Difference, difference_of
+from rttrr_pin.diagnosis.joint_differences import joint_differences, rpy, unset_limits
+from rttrr_pin.diagnosis.rigid_tree import Body, Member, Pose, RigidTree, link_of, total
+from rttrr_pin.diagnosis.tolerance import UNLIKE, Level, Tolerance
 
 
 def differences(a: RigidTree, b: RigidTree, tolerance: Tolerance) -> tuple[RigidTree, list[Difference]]:
@@ -79,10 +23,12 @@ def differences(a: RigidTree, b: RigidTree, tolerance: Tolerance) -> tuple[Rigid
     level = tolerance.length(a.gravity, b.gravity)
     if level.differs:
         g = b.gravity
-        found.append(_of("gravity", None, None, a.gravity, g, level, lambda tree: replace(tree, gravity=g)))
+        found.append(difference_of("gravity", None, None, (a.gravity, g), level, lambda tree: replace(tree, gravity=g)))
     found += _base(a, b, tolerance)
+    names = [body.joint.name for body in a.bodies]
+    unset = {name for tree in (a, b) for name in unset_limits(tree)}
     for k, (x, y) in enumerate(zip(a.bodies, b.bodies, strict=True)):
-        found += _joint(k, x, y, tolerance, [body.joint.name for body in a.bodies])
+        found += joint_differences(k, x, y, tolerance, names, unset)
         merged, own = _body(k, x, y, tolerance)
         if merged is not None:
             a = a.changed(k, members=merged)
@@ -90,21 +36,14 @@ def differences(a: RigidTree, b: RigidTree, tolerance: Tolerance) -> tuple[Rigid
     return a, found
 
 
-def _of(
-    kind: str, link: str | None, joint: str | None, x: Any, y: Any, level: Level, change: Change | None, unit: str = ""
-) -> Difference:
-    x, y = (own.tolist() if isinstance(own, np.ndarray) else own for own in (x, y))
-    return Difference(kind, link, joint, x, y, level.size, level.printed, unit or UNITS.get(kind, ""), change)
-
-
 def _base(a: RigidTree, b: RigidTree, tolerance: Tolerance) -> Iterator[Difference]:
     """Links that stand still, which no torque feels."""
-    of_b = {own.link.name: own for own in b.base}
-    for own in a.base:
-        other = of_b.get(own.link.name)
-        if other is not None:
-            for kind, _, x, y, level in _link(own.link, other.link, tolerance):
-                yield _of(kind, own.link.name, None, x, y, level, None)
+    of_a, of_b = ({own.link.name: own.link for own in tree.base if own.massive} for tree in (a, b))
+    whole_a, whole_b = (link_of(a.base[0].link.name, total(tree.base)) for tree in (a, b))
+    if of_a.keys() == of_b.keys() and any(_link(whole_a, whole_b, tolerance)):
+        for name, link in of_a.items():
+            for kind, _, x, y, level in _link(link, of_b[name], tolerance):
+                yield difference_of(kind, name, None, (x, y), level, None)
 
 
 def _link(x: Link, y: Link, tolerance: Tolerance) -> Iterator[tuple[str, str, Any, Any, Level]]:
@@ -139,7 +78,7 @@ def _body(k: int, x: Body, y: Body, tolerance: Tolerance) -> tuple[tuple[Member,
         return None, found + [_lone(k, joint, name, of_x.get(name), of_y.get(name)) for name in lone]
     merged = (Member(whole_x),)
     own = [
-        _of(kind, x.name, joint, p, q, level, _changed_link(k, x.name, key, q))
+        difference_of(kind, x.name, joint, (p, q), level, _changed_link(k, x.name, key, q))
         for kind, key, p, q, level in _link(whole_x, whole_y, tolerance)
     ]
     return merged, own
@@ -160,20 +99,24 @@ def _member(k: int, joint: str, x: Member, y: Member, tolerance: Tolerance) -> l
     found = list(_link(x.link, seen, tolerance))
     placed = [
         ("position", tolerance.length(x.pose.p, y.pose.p), x.pose.p, y.pose.p, Pose(x.pose.R, y.pose.p)),
-        ("orientation", tolerance.turn(x.pose.R, y.pose.R), *_rpy(x.pose.R, y.pose.R), Pose(y.pose.R, x.pose.p)),
+        ("orientation", tolerance.turn(x.pose.R, y.pose.R), rpy(x.pose.R), rpy(y.pose.R), Pose(y.pose.R, x.pose.p)),
     ]
     if not any(level.differs for _, level, *_ in placed):
         found = list(_link(x.link, y.link, tolerance))
     elif found and len(own := list(_link(x.link, y.link, tolerance))) < len(found):
         at = [
-            _of(kind, name, joint, p, q, level, _placed(k, name, kind, pose))
+            difference_of(kind, name, joint, (p, q), level, _placed(k, name, kind, pose))
             for kind, level, p, q, pose in placed
             if level.differs
         ]
         return at + [
-            _of(kind, name, joint, p, q, level, _changed_link(k, name, key, q)) for kind, key, p, q, level in own
+            difference_of(kind, name, joint, (p, q), level, _changed_link(k, name, key, q))
+            for kind, key, p, q, level in own
         ]
-    return [_of(kind, name, joint, p, q, level, _changed_link(k, name, key, q)) for kind, key, p, q, level in found]
+    return [
+        difference_of(kind, name, joint, (p, q), level, _changed_link(k, name, key, q))
+        for kind, key, p, q, level in found
+    ]
 
 
 def _placed(k: int, name: str, kind: str, pose: Pose) -> Change:
@@ -195,75 +138,5 @@ def _lone(k: int, joint: str, name: str, x: Member | None, y: Member | None) -> 
         empty = [Member(Link(name))] if not kept else []
         return tree.changed(k, members=(*kept, *empty, *([] if y is None else [y])))
 
-    masses = (own and own.link.mass for own in (x, y))
-    return _of("link", name, joint, *masses, Level(1.0, False, True), change)
-
-
-def _joint(k: int, x: Body, y: Body, tolerance: Tolerance, names: list[str]) -> Iterator[Difference]:
-    """What differs of two joints."""
-    name, unit = x.joint.name, "rad" if x.joint.type.rotates else "m"
-
-    def told(kind: str, p: Any, q: Any, level: Level, change: Change | None, own_unit: str = "") -> Difference:
-        return _of(kind, None, name, p, q, level, change, own_unit)
-
-    level = tolerance.length(x.pose.p, y.pose.p)
-    if level.differs:
-        yield told("position", x.pose.p, y.pose.p, level, _pose(k, p=y.pose.p))
-    level = tolerance.turn(x.pose.R, y.pose.R)
-    if level.differs:
-        yield told("orientation", *_rpy(x.pose.R, y.pose.R), level, _pose(k, R=y.pose.R))
-    if x.joint.type.has_axis and y.joint.type.has_axis:
-        level = tolerance.direction(x.joint.axis, y.joint.axis)
-        if level.differs:
-            yield told("axis", x.joint.axis, y.joint.axis, level, _joint_with(k, axis=y.joint.axis))
-    if x.joint.type != y.joint.type:
-        own_type = {"type": y.joint.type}
-        same = x.joint.type.rotations == y.joint.type.rotations and x.joint.type.has_axis
-        change = None if same else _joint_with(k, **own_type)
-        yield told("type", str(x.joint.type), str(y.joint.type), Level(1.0, False, True), change, "no unit")
-    yield from _mimic(k, x, y, tolerance, names)
-    for key in EFFECTS:
-        takes = (getattr(x.joint.effects, key), getattr(y.joint.effects, key))
-        says = (getattr(x.joint.dynamics, key), getattr(y.joint.dynamics, key))
-        for (p, q), part in ((takes, True), (says, False)):
-            level = tolerance.number(p, q)
-            if level.differs:
-                yield told(key, p, q, level, _effect(k, key, q) if part else None)
-                break
-    for own in fields(Limits):
-        p, q = getattr(x.joint.limits, own.name), getattr(y.joint.limits, own.name)
-        least = 1.0 if own.name in ("lower", "upper") else 0.0
-        level = tolerance.number(p, q, least) if math.isfinite(p) and math.isfinite(q) else Level(1.0, False, p != q)
-        if level.differs:
-            yield replace(told("limits", p, q, level, None, unit), kind=f"{own.name} limit")
-
-
-def _mimic(k: int, x: Body, y: Body, tolerance: Tolerance, names: list[str]) -> Iterator[Difference]:
-    p, q = x.joint.mimic, y.joint.mimic
-    if p is None and q is None:
-        return
-    level = Level(1.0, False, True)
-    if p is not None and q is not None and p.joint == q.joint:
-        own = [tolerance.number(p.multiplier, q.multiplier), tolerance.number(p.offset, q.offset, 1.0)]
-        level = max(own)
-        if not any(one.differs for one in own):
-            return
-        level = next((one for one in own if one.beyond), level)
-    told = [None if m is None else {"joint": names[m.joint], "multiplier": m.multiplier, "offset": m.offset} for m in (p, q)]
-    yield _of("mimic", None, x.joint.name, *told, level, _joint_with(k, mimic=q))
-
-
-def _joint_with(k: int, **numbers: Any) -> Change:
-    return lambda tree: tree.changed_joint(k, **numbers)
-
-
-def _effect(k: int, key: str, value: float) -> Change:
-    return lambda tree: tree.changed_joint(k, effects=replace(tree.bodies[k].joint.effects, **{key: value}))
-
-
-def _pose(k: int, **numbers: Array) -> Change:
-    return lambda tree: tree.changed(k, pose=replace(tree.bodies[k].pose, **numbers))
-
-
-def _rpy(x: Array, y: Array) -> tuple[list[float], list[float]]:
-    return [*angles_of(x)], [*angles_of(y)]
+    masses = (x and x.link.mass, y and y.link.mass)
+    return difference_of("link", name, joint, masses, UNLIKE, change)

@@ -12,8 +12,8 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import split_columns
 from rttrr_pin.core.dynamics import evaluate, joint_states
 from rttrr_pin.core.model import Model
-from rttrr_pin.core.scalars import FLOAT, columns
-from rttrr_pin.diagnosis.descriptions import Difference
+from rttrr_pin.core.scalars import FLOAT
+from rttrr_pin.diagnosis.difference import Difference
 from rttrr_pin.diagnosis.rigid_tree import RigidTree
 from rttrr_pin.errors import InputError
 from rttrr_pin.exact.rounding import bounded_dynamics
@@ -32,6 +32,7 @@ class Torques:
 
     Attributes:
         labels: the degrees of freedom, as the first calls them.
+        joints: their joints.
         motion: the states.
         tau: of the first robot, (N, degrees of freedom) [N m or N].
         bound: on what rounding does to them, (degrees of freedom,).
@@ -151,16 +152,16 @@ def torques(model: Model, motion: Motion, joints: Sequence[str]) -> Array:
     own = [motion[joint.name] for joint in model.moving]
     q, v, a = (np.hstack([parts[k] for parts in own]) for k in range(3))
     with np.errstate(all="ignore"):
-        result = evaluate(model, FLOAT, *_rows(q, v, a)).scalars(("tau",))
+        result = evaluate(model, FLOAT, _rows(q), _rows(v), _rows(a)).scalars(("tau",))
     table = np.empty((max(len(q), 2), len(result)))
     for column, x in enumerate(result):
         table[:, column] = np.asarray(x)
     return _of_joints(model, joints, split_columns(model, table[: len(q)], ("tau",))["tau"])
 
 
-def _rows(*arrays: Array) -> list[Array]:
+def _rows(x: Array) -> Array:
     """At least two states, so that scalars are arrays."""
-    return [np.repeat(x, 2, axis=0) if len(x) == 1 else x for x in arrays]
+    return np.repeat(x, 2, axis=0) if len(x) == 1 else x
 
 
 def _of_joints(model: Model, joints: Sequence[str], tau: Array) -> Array:

@@ -9,7 +9,9 @@ import numpy as np
 
 from rttrr_pin.core.altered import with_locked
 from rttrr_pin.core.model import Model
-from rttrr_pin.diagnosis.descriptions import Difference, differences
+from rttrr_pin.diagnosis.descriptions import differences
+from rttrr_pin.diagnosis.difference import Difference
+from rttrr_pin.diagnosis.joint_differences import unset_limits
 from rttrr_pin.diagnosis.pairing import Pairs, consistent, pairs_by_name, pairs_by_structure
 from rttrr_pin.diagnosis.rigid_tree import RigidTree
 from rttrr_pin.diagnosis.same_frames import Reframed, reframed
@@ -119,7 +121,11 @@ def notes_of(x: Matched) -> list[str]:
         notes.append(f"the other direction: {listed(turned)}; q, v, a and tau of the second are the negatives")
     if moved := [name for name, own in zip(names, x.other.moved, strict=True) if own]:
         notes.append(f"same motion, other frames: {listed(moved)}")
-    return notes + [*_members(x)]
+    unset = [unset_limits(tree) for tree in (x.a, x.other.tree)]
+    for what, own, other in (("first", unset[0], unset[1]), ("second", unset[1], unset[0])):
+        if lacking := [key for key in own if key not in other]:
+            notes.append(f"limits that the {what} sets for no joint: {listed(lacking)}")
+    return [*notes, *_members(x)]
 
 
 def _partners(x: Matched) -> list[int]:
@@ -143,8 +149,7 @@ def _members(x: Matched) -> Iterable[str]:
             frames += [one.link.name for one in lone if not one.massive]
         if merged:
             other = "second" if this == "first" else "first"
-            notes = f"fixed links of the {this} that the {other} has merged: {listed(merged)}"
-            yield notes
+            yield f"fixed links of the {this} that the {other} has merged: {listed(merged)}"
         if frames:
             yield f"frames without mass that only the {this} has: {listed(frames)}"
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
-import os
 import re
 from collections.abc import Callable, Sequence
+from itertools import takewhile
 
 import numpy as np
 
@@ -34,9 +34,16 @@ def pairs_by_name(a: RigidTree, b: RigidTree) -> Pairs:
 def plain(names: Sequence[str]) -> list[str]:
     """Names in small letters and digits, without the words that all of them begin or end with."""
     words = [re.findall(r"[^\W_]+", name.lower()) for name in names]
-    front = len(os.path.commonprefix(words)) if len(words) > 1 else 0
-    back = len(os.path.commonprefix([own[front:][::-1] for own in words])) if len(words) > 1 else 0
+    front = _in_front(words)
+    back = _in_front([own[front:][::-1] for own in words])
     return ["".join(own[front : len(own) - back]) for own in words]
+
+
+def _in_front(lists: Sequence[Sequence[str]]) -> int:
+    """How many words all lists begin with, of two or more."""
+    if len(lists) < 2:
+        return 0
+    return sum(1 for _ in takewhile(lambda words: len(set(words)) == 1, zip(*lists, strict=False)))
 
 
 def _by_key(a: RigidTree, b: RigidTree, key: Callable[[RigidTree], list[str]], pairs: Pairs) -> None:

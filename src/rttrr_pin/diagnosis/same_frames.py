@@ -44,7 +44,9 @@ def reframed(a: RigidTree, b: RigidTree, pairs: Pairs, tolerance: Tolerance) -> 
     for i, of_a in enumerate(a.bodies):
         of_b = b.bodies[pairs[i]]
         carrier = frames[of_a.parent] @ of_b.pose
-        choices = [(_unlike(a, b, i, pairs, carrier, x, tolerance), k, x) for k, x in enumerate(_choices(of_a, of_b, carrier))]
+        choices = [
+            (_unlike(a, b, i, pairs, carrier, x, tolerance), k, x) for k, x in enumerate(_choices(of_a, of_b, carrier))
+        ]
         _, k, frame = min(choices, key=lambda one: one[:2])
         frames[i] = frame
         own = _in_frame(of_a, of_b, carrier, frame)

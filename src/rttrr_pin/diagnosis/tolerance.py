@@ -41,6 +41,10 @@ class Level(NamedTuple):
         return self.printed or self.beyond
 
 
+UNLIKE = Level(1.0, False, True)
+"""Of what is no number."""
+
+
 @dataclass(frozen=True, slots=True)
 class Tolerance:
     """What is rounding.
@@ -59,13 +63,12 @@ class Tolerance:
         x, y = sorted((places(a), places(b)))
         return cls(size, 0.5 * 10.0**-x if x in DECIMALS and y > x else 0.0)
 
-    def level(self, difference: float, scale: float, places: float = 1.0) -> Level:
-        """Of a difference, in terms of a scale; `places` counts how many units of the last place may add up."""
+    def level(self, difference: float, scale: float, count: float = 1.0) -> Level:
+        """Of a difference, in terms of a scale; `count` numbers with a last place of their own may add up."""
         if difference == 0.0 or not math.isfinite(difference):
             return Level(abs(difference), False, difference != 0.0)
         size = difference / scale if scale else math.inf
-        few = self.places * places * (1 + 1e-6)
-        printed = difference <= max(PRINTED * scale, few)
+        printed = difference <= count * max(PRINTED * scale, self.places) * (1 + 1e-6)
         exact = difference <= DOUBLES * scale
         return Level(size, printed and not exact, not printed)
 
@@ -85,13 +88,15 @@ class Tolerance:
         scale = max(float(np.linalg.norm(x)), float(np.linalg.norm(y)))
         difference = float(np.linalg.norm(x - y))
         lever = max((abs(m) for m in masses), default=0.0) * self.size**2
-        return Level(difference / scale if scale else 0.0, False, False) if difference <= 1e-14 * lever else self.level(
-            difference, scale, 4.0
+        return (
+            Level(difference / scale if scale else 0.0, False, False)
+            if difference <= 1e-14 * lever
+            else self.level(difference, scale, 4.0)
         )
 
     def turn(self, x: Array, y: Array) -> Level:
         """Of two rotations [rad]."""
-        return self.level(float(np.linalg.norm(x - y)) / math.sqrt(2.0), 1.0, 2.0)
+        return self.level(float(np.linalg.norm(x - y)) / math.sqrt(2.0), 1.0, 3.0)
 
     def direction(self, x: Array, y: Array) -> Level:
         """Of two axes [rad], whatever their sign."""

@@ -1,0 +1,45 @@
+"""`rttrr-pin compare`."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import click
+
+from rttrr_pin.diagnosis.compare import compare_robots
+from rttrr_pin.diagnosis.compare_report import show_comparison
+from rttrr_pin.reporting.options import base, check_targets, flag, friction, gravity, outcome, reading, seed, xacro
+from rttrr_pin.reporting.output import AGREE, DISAGREE, Output, write_json
+from rttrr_pin.validation.options import RunOptions
+
+
+@click.command
+@click.argument("a", help="A bundled robot's name, the path of a URDF or MJCF file, or example:NAME.")
+@click.argument("b", help="Another description of the same robot, likewise.")
+@click.option("--states", default=500, help="At how many states torques are compared.")
+@seed
+@gravity
+@base
+@friction
+@xacro
+@reading
+@outcome
+@flag("--full", help="Show every difference, and torques joint by joint.")
+def compare(a: str, b: str, states: int, json: str | None, quiet: bool, full: bool, **run: Any) -> int:
+    """Compare two descriptions of one robot: what differs, and what of it changes which torque by how much.
+
+    Options of how a file is read go for both.
+
+    Exit code: 0 the same dynamics (limits and names may differ), 1 they differ, 2 unusable input.
+    """
+    options = RunOptions(robot=a, **run)
+    other = replace(options, robot=b)
+    check_targets({"--json": json}, [a, b])
+    first, second = options.load(json), other.load(json)
+    check_targets({"--json": json}, [a, b])
+    result = compare_robots(first, second, n_states=states, seed=options.seed)
+    result = replace(result, robots=(a, b))
+    write_json(json, result.to_dict)
+    show_comparison(result, Output(quiet=quiet or json == "-"), full)
+    return AGREE if result.passed else DISAGREE
