@@ -52,7 +52,7 @@ def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "my_arm.urdf").write_text(text)
     (tmp_path / "bad_arm.urdf").write_text(re.sub(r'<mass value="(\d+)\.', r'<mass value="\1,', text, count=1))
     other = text.replace('value="3.75387"', 'value="3.9"').replace('ixy="-5.97049e-05"', 'ixy="5.97049e-05"')
-    other = other.replace('upper="0.32"', 'upper="0.3"').replace("joint_", "axis_")
+    other = other.replace('upper="0.32"', 'upper="0.3"').replace("joint_5", "wrist")
     (tmp_path / "other_arm.urdf").write_text(other)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "80")

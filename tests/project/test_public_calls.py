@@ -122,7 +122,7 @@ def calls() -> dict[str, Call]:
         ),
         "compare_robots": (
             rttrr_pin.compare_robots,
-            {"a": robot, "b": "trtrr", "n_states": 3, "seed": 0, "progress": None},
+            {"a": robot, "b": "trtrr", "n_states": 3, "seed": 0},
         ),
         "inspect": (rttrr_pin.inspect, {"robot": robot, "folder": None, "select": "P", "ignore": ()}),
         "derive": (

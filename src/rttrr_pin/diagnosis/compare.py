@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,6 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.diagnosis.difference import Difference
 from rttrr_pin.diagnosis.effects_of import (
     Effect,
-    Progress,
     Torques,
     all_together,
     effect,
@@ -129,7 +128,7 @@ class Comparison(Summarised):
                 if len(self.mattering) == 1
                 else (f"{len(self.mattering)} differences change torques, most of all")
             )
-            parts.append(f"{number}: {first.difference.where}, {first.worst:.3g} of the torque of {first.joint} (rms)")
+            parts.append(f"{number}: {first.difference.where}, {100 * first.worst:.3g} % of the torque of {first.joint} (rms)")
         if lone := (*self.only_a, *self.only_b):
             parts.append(f"without a counterpart: {listed(lone)}")
         if self.free and not self.mattering:
@@ -162,7 +161,6 @@ def compare_robots(
     b: Robot | AnySource,
     n_states: int = 500,
     seed: int = 0,
-    progress: Progress | None = None,
 ) -> Comparison:
     """Say in what two descriptions of one robot differ, and which of it matters for the torques.
 
@@ -176,7 +174,6 @@ def compare_robots(
         b: another description of it.
         n_states: how many states, up to 100,000.
         seed: from 0 to 2^128 - 1; the same seed gives the same states.
-        progress: called with the number of differences whose effect is known.
 
     Returns:
         The differences, sorted by effect, and what none of them explains.
@@ -198,25 +195,20 @@ def compare_robots(
             f"({listed(second.joint_names)}) does: pass two descriptions of one robot"
         )
     torques = first_torques(both.a, both.other.tree, count, whole)
-    effects = []
-    beyond = [own for own in both.differences if not own.rounding]
-    for own in beyond:
-        effects.append(effect_of(own, both.a, torques))
-        if progress is not None:
-            progress(len(effects))
+    effects = [effect_of(own, both.a, torques) for own in both.differences if not own.rounding]
     effects.sort(key=lambda own: (-own.worst, not own.matters))
     printed = sorted((own for own in both.differences if own.rounding), key=lambda own: -own.relative)
     together = None
     if printed:
         change = torques.of(all_together(both.a, printed)) - torques.tau
-        together = effect(printed[0], change, torques)
+        together = effect(replace(printed[0], change=None), change, torques)
     return Comparison(
         robots=(first.name, second.name),
         pairs=both.pairs,
         only_a=both.only_a,
         only_b=both.only_b,
         effects=tuple(effects),
-        rounding=tuple(printed),
+        rounding=tuple(replace(own, change=None) for own in printed),
         rounding_effect=together,
         joints=_joints(both, torques),
         notes=tuple(notes_of(both)),

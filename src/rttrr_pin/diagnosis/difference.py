@@ -44,7 +44,7 @@ class Difference:
         relative: the size of the difference; of directions in rad, of anything else relative to the larger number.
         rounding: whether digits that were printed explain it.
         unit: of a and b.
-        change: the first robot with this number of the second; None where no torque can depend on it.
+        change: the first robot with this number of the second; None where no torque can depend on it, and in results.
     """
 
     kind: str

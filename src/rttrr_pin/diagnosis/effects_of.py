@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -175,9 +175,10 @@ def _of_joints(model: Model, joints: Sequence[str], tau: Array) -> Array:
 
 def effect_of(difference: Difference, a: RigidTree, torques: Torques) -> Effect:
     """The change of the torques by one difference."""
+    told = replace(difference, change=None)
     if difference.change is None:
-        return Effect(difference, {}, {}, {})
-    return effect(difference, torques.of(difference.change(a).model) - torques.tau, torques)
+        return Effect(told, {}, {}, {})
+    return effect(told, torques.of(difference.change(a).model) - torques.tau, torques)
 
 
 def effect(difference: Difference, change: Array, torques: Torques) -> Effect:
@@ -196,7 +197,3 @@ def all_together(a: RigidTree, found: Sequence[Difference]) -> Model:
         if own.change is not None:
             a = own.change(a)
     return a.model
-
-
-Progress = Callable[[int], None]
-"""Called with the number of differences done."""
