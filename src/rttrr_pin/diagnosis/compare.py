@@ -128,7 +128,9 @@ class Comparison(Summarised):
                 if len(self.mattering) == 1
                 else (f"{len(self.mattering)} differences change torques, most of all")
             )
-            parts.append(f"{number}: {first.difference.where}, {100 * first.worst:.3g} % of the torque of {first.joint} (rms)")
+            parts.append(
+                f"{number}: {first.difference.where}, {100 * first.worst:.3g} % of the torque of {first.joint} (rms)"
+            )
         if lone := (*self.only_a, *self.only_b):
             parts.append(f"without a counterpart: {listed(lone)}")
         if self.free and not self.mattering:

@@ -99,7 +99,9 @@ def number(x: float) -> str:
 
 def _idle(result: Comparison, full: bool) -> list[str]:
     """Differences that change no torque."""
-    rows = [f"{own.difference.where} ({', '.join(values_of(own.difference))})".replace("\n", " ") for own in result.idle]
+    rows = [
+        f"{own.difference.where} ({', '.join(values_of(own.difference))})".replace("\n", " ") for own in result.idle
+    ]
     if not rows:
         return []
     lines = [f"no torque changes: {', '.join(rows) if full else listed(rows)}"]
