@@ -18,7 +18,6 @@ from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
 from typing import Any, TypeAlias
 
-import rttrr_pin
 from rttrr_pin.core import algebra, dynamics, newton_euler
 from rttrr_pin.core.joints import JOINT_TYPES, JointType
 from rttrr_pin.core.joints.base import Body
@@ -122,7 +121,7 @@ def source_line(mutation: Mutation, line: int) -> str:
 def generated(function: FunctionType, errors: Errors = errors) -> Iterator[Mutation]:
     """All errors of one function, also those that change no number."""
     syntax = _syntax(function)
-    file = Path(inspect.getfile(function)).relative_to(Path(rttrr_pin.__file__).parent).as_posix()
+    file = Path(inspect.getfile(function)).relative_to(Path(algebra.__file__).parents[1]).as_posix()
     originals = {id(x): ast.unparse(x) for x in syntax.nodes if isinstance(x, ast.stmt)}
     seen: dict[str, int] = {}
     changed: set[tuple[int, str]] = set()
