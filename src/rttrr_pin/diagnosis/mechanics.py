@@ -8,8 +8,8 @@ from functools import lru_cache
 
 from rttrr_pin.core.model import Model
 from rttrr_pin.diagnosis.hypothesis import Apply, Hypothesis
-from rttrr_pin.diagnosis.mutations import Mutation, at, is_local, mutations, place_of, source_line
-from rttrr_pin.diagnosis.relevance import concerned
+from rttrr_pin.diagnosis.mutations import Mutation, at, functions, is_local, mutations_of, place_of, source_line
+from rttrr_pin.diagnosis.relevance import concerned, runs
 from rttrr_pin.diagnosis.terms import LETTERS, SENTENCES, UNKNOWN, named
 
 EQUATION = re.compile(r"#.*?(?<!before )(\(\d+\)(?:-\(\d+\))?)")
@@ -34,7 +34,7 @@ def mechanics(model: Model) -> list[Hypothesis]:
     An error that one link alone can have in this robot is named with that link, and stands there once.
     """
     found = []
-    for error in mutations():
+    for error in (one for name in functions() if runs(name, model) for one in mutations_of(name)):
         links = concerned(error, model)
         if links is None:
             found.append(hypothesis(error, model))

@@ -80,6 +80,12 @@ def mutations(link: int | None = None) -> list[Mutation]:
     return list(_mutations(link))
 
 
+@cache
+def mutations_of(function: str) -> tuple[Mutation, ...]:
+    """Those of one function, at all links."""
+    return tuple(one for one in generated(functions()[function]) if one.id not in EQUIVALENT)
+
+
 def mutation(identity: str) -> Mutation:
     """The error of that id, at all links.
 
@@ -270,8 +276,7 @@ def _copied(function: FunctionType, mutations: Sequence[Mutation], namespace: di
 def _mutations(link: int | None = None) -> tuple[Mutation, ...]:
     if link is not None:
         return tuple(replace(one, link=link) for one in _mutations() if is_local(one))
-    every = (one for function in functions().values() for one in generated(function))
-    return tuple(one for one in every if one.id not in EQUIVALENT)
+    return tuple(one for name in functions() for one in mutations_of(name))
 
 
 @cache

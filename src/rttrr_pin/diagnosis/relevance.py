@@ -26,7 +26,7 @@ def concerned(error: Mutation, model: Model) -> tuple[int, ...] | None:
     if error.function == "dynamics" and error.expression == "x":
         return None
     shows = _shows(error)
-    return tuple(i for i in range(len(model.links)) if _runs(error, model, i) and shows(model, i))
+    return tuple(i for i in range(len(model.links)) if _runs(error.function, model, i) and shows(model, i))
 
 
 @cache
@@ -35,15 +35,20 @@ def _guard(error: Mutation) -> str:
     return guard_of(syntax.statement(node))
 
 
-def _runs(error: Mutation, model: Model, i: int) -> bool:
-    """Whether the function is at work at a link."""
+def runs(function: str, model: Model) -> bool:
+    """Whether a function is at work anywhere in a robot."""
+    return any(_runs(function, model, i) for i in range(len(model.links)))
+
+
+def _runs(function: str, model: Model, i: int) -> bool:
+    """Whether a function is at work at a link."""
     joint = model.joints[i]
     kind = type(joint.type)
-    if error.function in ALGEBRA:
-        return error.function in kind.motion.__code__.co_names
-    if "." in error.function:
-        return error.function in (kind.motion.__qualname__, kind.driving_force.__qualname__)
-    return joint.mimic is not None or error.function not in ("mimicked", "generalised_forces")
+    if function in ALGEBRA:
+        return function in kind.motion.__code__.co_names
+    if "." in function:
+        return function in (kind.motion.__qualname__, kind.driving_force.__qualname__)
+    return joint.mimic is not None or function not in ("mimicked", "generalised_forces")
 
 
 @cache
