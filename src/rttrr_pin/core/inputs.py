@@ -84,7 +84,8 @@ def real(name: str, values: ArrayLike) -> Array:
         ShapeError: rows of different lengths.
         NumberError: a kind of number that float64 cannot hold.
     """
-    if isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
+    subclass = isinstance(values, np.ndarray) and type(values) is not np.ndarray  # NumPy loads np.ma only where asked
+    if subclass and isinstance(values, np.ma.MaskedArray) and np.ma.is_masked(values):
         raise NumberError(f"{name} has masked entries: fill them, or drop those states", name=name, value="masked")
     try:
         array = np.asarray(values)

@@ -41,6 +41,10 @@ class Output(Console):
     Its reader may leave early, as `head` does: the exit code stays that of the verdict.
     """
 
+    def __init__(self, **options: Any) -> None:
+        """As rich's console, but for names of pictures between colons, which may be names of links."""
+        super().__init__(emoji=False, **options)
+
     def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterator[Segment]:
         """The pieces of what is printed, in each of which names of files may stand."""
         for segment in super().render(renderable, options):
