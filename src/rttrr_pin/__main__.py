@@ -9,7 +9,7 @@ import sys
 from rttrr_pin.reporting import interrupts
 
 MANY_OBJECTS = 200_000
-"""Made between two collections of garbage: with Python's 700, a seventh of a short run looks for some and finds none."""
+"""Made between two collections of garbage; with 700, as Python has it, a seventh of a short run looks for some."""
 
 
 def run() -> int:

@@ -179,10 +179,9 @@ class ModelMismatchError(ImplementationError):
 
     def __init__(self, library: str, differences: Iterable[str], note: str = "") -> None:
         self.library, self.differences, self.note = library, tuple(differences), note
-        shown = "\n  ".join(self.differences[:12])
-        more = f"\n  and {len(self.differences) - 12} more" if len(self.differences) > 12 else ""
+        shown = listed(self.differences, 12, "\n  ")
         super().__init__(
-            f"{library} built another model than the file describes, so comparing would mislead:\n  {shown}{more}"
+            f"{library} built another model than the file describes, so comparing would mislead:\n  {shown}"
             f"{note and chr(10)}{note}"
         )
 
@@ -197,6 +196,12 @@ LONGEST, MOST = 200, 2000
 def shortened(text: str) -> str:
     """Text that may be long by mistake, as a message can show it."""
     return text if len(text) <= LONGEST else f"{text[: LONGEST - 40]}... ({len(text)} characters)"
+
+
+def listed(items: Iterable[str], most: int = 6, separator: str = ", ") -> str:
+    """The first of several, and how many more there are."""
+    items = list(items)
+    return separator.join(items[:most] + [f"and {len(items) - most} more"] * (len(items) > most))
 
 
 def told(error: BaseException, where: str = "") -> str:
@@ -216,7 +221,4 @@ def nearest(got: object, known: Iterable[str]) -> str:
     )
     if close:
         return "did you mean " + " or ".join(close) + "?"
-    shown = ", ".join(shortened(name) for name in names[:12]) + (
-        f", ... ({len(names)} in all)" if len(names) > 12 else ""
-    )
-    return f"there are {shown}" if names else "there are none"
+    return f"there are {listed(map(shortened, names), 12)}" if names else "there are none"

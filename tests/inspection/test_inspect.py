@@ -589,3 +589,7 @@ def test_the_documented_rules_are_the_rules(repository: Path) -> None:
 
 def test_severities_are_those_of_the_checks() -> None:
     assert {check.severity for check in CHECKS} == set(Severity)
+
+
+def test_its_representation_counts() -> None:
+    assert repr(inspect("rttrr")) == "<Inspection of 'rttrr': 0 errors, 0 warnings, 0 notes>"

@@ -418,3 +418,16 @@ def test_what_takes_long_to_read_is_refused_at_once(old: str, new: str, message:
     with pytest.raises(UrdfError, match=message) as caught:
         rttrr_pin.load(text.replace(old, new))
     assert time.process_time() - started < 2.0 and len(str(caught.value)) < 1000
+
+
+def test_of_a_folder_with_one_robot_its_file_is_meant(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Found in one walk, and from the home folder on."""
+    monkeypatch.setenv("HOME", str(tmp_path))
+    (tmp_path / "robots").mkdir()
+    one, two = (tmp_path / "robots" / name for name in ("one.urdf", "two.urdf"))
+    one.touch()
+    assert catalogue.one_or_several("~/robots") == (str(one), {})
+    two.touch()
+    assert catalogue.one_or_several("~/robots") == ("~/robots", {"one.urdf": one, "two.urdf": two})
+    for name in ("rttrr", "", "a" * 5000, "\0", "~nobody_of_that_name/robots"):
+        assert catalogue.one_or_several(name) == (name, {})

@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 
-from rttrr_pin.auditing.results import AuditResult, ComponentAudit, Finding, Verdict, cells, counted
+from rttrr_pin.auditing.results import AuditResult, ComponentAudit, Finding, Verdict, cells
 from rttrr_pin.auditing.wording import (
     MEANING,
     convention_words,
@@ -20,6 +20,7 @@ from rttrr_pin.derivation.writers.html import html
 from rttrr_pin.derivation.writers.latex import latex
 from rttrr_pin.derivation.writers.markdown import markdown
 from rttrr_pin.derivation.writers.typeset import settable
+from rttrr_pin.reporting.results import counted
 
 WRITERS: Mapping[str, Callable[[doc.Document], str]] = {
     "markdown": partial(markdown, formula="$`{}`$"),  # printed terms have stars and underscores in any place

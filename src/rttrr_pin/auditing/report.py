@@ -11,7 +11,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from rttrr_pin.auditing.results import AuditResult, ComponentAudit, Finding, Verdict, cells, counted
+from rttrr_pin.auditing.results import AuditResult, ComponentAudit, Finding, Verdict, cells
 from rttrr_pin.auditing.wording import (
     convention_words,
     dimension_summary,
@@ -19,6 +19,7 @@ from rttrr_pin.auditing.wording import (
     evidence_words,
     verdict_words,
 )
+from rttrr_pin.reporting.results import counted
 
 COLOURS = {
     Verdict.MATCH: "green",

@@ -11,7 +11,7 @@ from typing import Any
 from rttrr_pin.auditing.differences import Kind
 from rttrr_pin.auditing.evidence import Evidence
 from rttrr_pin.auditing.publication import DEFINITION, Convention, Publication
-from rttrr_pin.reporting.results import Summarised, finite
+from rttrr_pin.reporting.results import Summarised, counted, finite
 
 SCHEMA = 1
 """Of the JSON; it grows when a key changes its meaning or goes."""
@@ -225,11 +225,6 @@ class AuditResult(Summarised):
                 "components": [component.to_dict() for component in self.components],
             }
         )
-
-
-def counted(number: int, what: str) -> str:
-    """Such as `1 finding`, `2 findings`."""
-    return f"{number} {what}{'' if number == 1 else 's'}"
 
 
 def cells(components: Sequence[ComponentAudit]) -> Iterator[tuple[str, str, dict[str, ComponentAudit]]]:

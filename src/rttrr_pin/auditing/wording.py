@@ -6,7 +6,8 @@ from collections.abc import Mapping
 
 from rttrr_pin.auditing.differences import Kind
 from rttrr_pin.auditing.evidence import Evidence
-from rttrr_pin.auditing.results import AuditResult, ComponentAudit, ConventionCheck, Finding, Totals, Verdict, counted
+from rttrr_pin.auditing.results import AuditResult, ComponentAudit, ConventionCheck, Finding, Totals, Verdict
+from rttrr_pin.reporting.results import counted
 
 MEANING: Mapping[Kind, str] = {
     Kind.RATE: "a dot, or the power of a rate, lost or added",

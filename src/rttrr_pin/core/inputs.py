@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.errors import MissingJointError, NumberError, ShapeError, UnknownNameError
+from rttrr_pin.errors import MissingJointError, NumberError, ShapeError, UnknownNameError, listed
 
 if TYPE_CHECKING:
     from rttrr_pin.core.joint import Joint
@@ -48,9 +48,10 @@ def coordinates(name: str, values: Coordinates, joints: Sequence[Joint]) -> Arra
         array = real(name, values)
         if array.ndim == 0 or array.shape[-1] != len(labels):
             each = "joint" if all(joint.nq == 1 for joint in joints) else "coordinate"
+            known = listed(labels, 8) or "the robot has no moving joint"
             got = "no axis" if array.ndim == 0 else f"{array.shape[-1]} values on its last axis"
             raise ShapeError(
-                f"{name} has {got}, expected {len(labels)} ({_listed(labels)}): pass one per {each}",
+                f"{name} has {got}, expected {len(labels)} ({known}): pass one per {each}",
                 name=name,
                 got=array.shape,
                 wanted=f"(..., {len(labels)})",
@@ -226,8 +227,3 @@ def _too_large(name: str, index: tuple[int, ...], value: int) -> NumberError:
         index=index,
         value=value,
     )
-
-
-def _listed(names: Sequence[str], most: int = 8) -> str:
-    shown = ", ".join(names[:most])
-    return shown + (", ..." if len(names) > most else "") if names else "the robot has no moving joint"

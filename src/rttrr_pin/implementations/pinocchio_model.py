@@ -15,7 +15,7 @@ from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints import FLOATING
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.scalars import EPS
-from rttrr_pin.errors import ImplementationError
+from rttrr_pin.errors import ImplementationError, listed
 from rttrr_pin.implementations import library
 from rttrr_pin.implementations.library import norms
 from rttrr_pin.implementations.pinocchio_links import PinLinks
@@ -51,8 +51,7 @@ def _printed(lines: Sequence[str]) -> str:
     if not messages:
         return ""
     number = "1 message" if len(messages) == 1 else f"{len(messages)} messages"
-    more = "; ..." if len(messages) > SHOWN else ""
-    return f"urdfdom, which reads the file for Pinocchio, printed {number}: {'; '.join(messages[:SHOWN])}{more}"
+    return f"urdfdom, which reads the file for Pinocchio, printed {number}: {listed(messages, SHOWN, '; ')}"
 
 
 def pin_joints(model: Model, pin_model: Any) -> list[library.LibraryJoint]:

@@ -26,7 +26,7 @@ from rttrr_pin.reporting.options import (
     xacro_arguments,
 )
 from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json, write_text
-from rttrr_pin.urdf.catalogue import several
+from rttrr_pin.urdf.catalogue import one_or_several
 from rttrr_pin.urdf.files import forget_reads
 from rttrr_pin.urdf.packages import named_packages
 from rttrr_pin.urdf.parser import read_document
@@ -75,7 +75,7 @@ def inspect(
     Exit code: 0 no errors, 1 errors (with --strict also warnings, with --fail-on what a parser does), 2 unusable
     input.
     """
-    robots, demands = several(robot), Demands(strict, fail_on)
+    (robot, robots), demands = one_or_several(robot), Demands(strict, fail_on)
     reports = {"--json": json, "--sarif": sarif, "--junit": junit}
     check_targets(reports, robots.values() or [robot])
     check_targets(reports | {"--fix": fix})

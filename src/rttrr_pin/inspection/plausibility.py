@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.errors import listed
 from rttrr_pin.inspection.cases import DENSITIES, LARGEST_GYRATION, Case, cases, ellipsoid_density
 from rttrr_pin.inspection.causes import cause_of
 from rttrr_pin.inspection.checks import Observation, Severity, Subject, check
@@ -140,10 +141,9 @@ def unknown(subject: Subject) -> Iterator[Observation]:
         link.name for link, inertial in subject.inertials() if inertial.mass.exact > 0 and subject.looks(link).missing
     ]
     if lost:
-        shown = ", ".join(lost[:3]) + (", ..." if len(lost) > 3 else "")
         yield Observation(
             subject.document, float(len(lost)), "links",
-            f"not compared with their geometry, whose meshes were not found: {shown}",
+            f"not compared with their geometry, whose meshes were not found: {listed(lost, 3)}",
             "inspect the file where its meshes lie",
         )  # fmt: skip
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.errors import listed
 from rttrr_pin.inspection.bodies import LinkRow
 from rttrr_pin.inspection.checks import Finding, Severity
 from rttrr_pin.inspection.parsers import MEANING, Behaviour, Verdict
@@ -154,8 +155,7 @@ def _verdict(verdict: Verdict, width: int) -> Iterator[str]:
         names_of.setdefault((match.behaviour, match.reason), []).append(match.name)
     for behaviour, reason in sorted(names_of, key=lambda rule: -list(Behaviour).index(rule[0])):
         names = names_of[behaviour, reason]
-        more = f" and {len(names) - MOST_PLACES} more" if len(names) > MOST_PLACES else ""
-        yield _wrapped(f"    {behaviour}: {reason}: {', '.join(names[:MOST_PLACES])}{more}", width)
+        yield _wrapped(f"    {behaviour}: {reason}: {listed(names, MOST_PLACES)}", width)
 
 
 def _wrapped(text: str, width: int) -> str:

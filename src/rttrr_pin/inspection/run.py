@@ -24,7 +24,7 @@ from rttrr_pin.inspection.file_faults import FILE_CHECKS
 from rttrr_pin.inspection.merged import merged_links
 from rttrr_pin.inspection.parsers import Verdict, verdicts
 from rttrr_pin.inspection.telling import OF_PLACEHOLDER, OF_TENSOR, checks_of, told
-from rttrr_pin.reporting.results import finite
+from rttrr_pin.reporting.results import counted, finite
 from rttrr_pin.urdf.document import UrdfDocument
 from rttrr_pin.urdf.parser import read_document
 
@@ -96,7 +96,7 @@ class Inspection:
         return finite(report.to_dict(self))
 
     def __repr__(self) -> str:
-        found = ", ".join(f"{count} {severity}" for severity, count in self.counts.items())
+        found = ", ".join(counted(count, severity) for severity, count in self.counts.items())
         return f"<Inspection of {self.robot!r}: {found}>"
 
 

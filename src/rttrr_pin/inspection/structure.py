@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.errors import listed
 from rttrr_pin.inspection.bodies import principal
 from rttrr_pin.inspection.checks import Observation, Severity, Subject, check
 from rttrr_pin.urdf.document import UrdfJoint, UrdfLink
@@ -171,7 +172,7 @@ def differs_slightly(subject: Subject) -> Iterator[Observation]:
     """Left and right links do not differ at all, where they differ by less than 1 percent."""
     pairs = [pair for pair in _pairs(subject) if ALIKE < pair.worst <= SLIGHT]
     if pairs:
-        shown = ", ".join(pair.link.name for pair in pairs[:3]) + (", ..." if len(pairs) > 3 else "")
+        shown = listed((pair.link.name for pair in pairs), 3)
         yield Observation(
             subject.document, max(pair.worst for pair in pairs), "",
             f"differ from their mirror images by less than 1 percent: {shown}", "compute both sides from one drawing",

@@ -18,7 +18,7 @@ def show_laws(report: LawReport, console: Console) -> None:
     states = drawn(report.n_states, report.sampling, report.seed)
     base = ", floating base" if report.base == "floating" else ""
     header = f"{report.subject}: laws of mechanics, {states}, payload {report.payload}{base}"
-    console.print(Text(report.robot, "bold"), Text(header), soft_wrap=True)
+    console.print(Text(f"{report.robot}:", "bold"), Text(header), soft_wrap=True)
     table = Table("law", "", "error / bound", "at state", "violated in", "", box=SIMPLE_HEAD, padding=(0, 1, 0, 0))
     for column in table.columns[2:5]:
         column.justify = "right"

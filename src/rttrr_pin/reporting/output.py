@@ -45,6 +45,11 @@ class Output(Console):
         """As rich's console, but for names of pictures between colons, which may be names of links."""
         super().__init__(emoji=False, **options)
 
+    def print(self, *objects: Any, **options: Any) -> None:
+        """Print, unless it is quiet: rich would lay everything out all the same."""
+        if not self.quiet:
+            super().print(*objects, **options)
+
     def render(self, renderable: RenderableType, options: ConsoleOptions | None = None) -> Iterator[Segment]:
         """The pieces of what is printed, in each of which names of files may stand."""
         for segment in super().render(renderable, options):

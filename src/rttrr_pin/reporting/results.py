@@ -19,6 +19,11 @@ class Summarised:
         return f"<{type(self).__name__}: {self.summary().partition(chr(10))[0]}>"
 
 
+def counted(number: int, what: str) -> str:
+    """Such as `1 finding`, `2 findings`."""
+    return f"{number} {what}{'' if number == 1 else 's'}"
+
+
 def finite(data: dict[str, Any]) -> dict[str, Any]:
     """Data for JSON, which has no number for NaN and infinities: these become text, "nan" and "inf"."""
     return {key: _finite(value) for key, value in data.items()}

@@ -98,12 +98,20 @@ def robots_in(folder: str | os.PathLike[str]) -> dict[str, Path]:
     return dict(sorted(by_name.items(), key=lambda item: Path(item[0])))
 
 
-def several(robot: str) -> dict[str, Path]:
-    """The files of `example:all` or of a folder that holds more than one, by name; none where one robot is meant."""
+def one_or_several(robot: str) -> tuple[str, dict[str, Path]]:
+    """The robot that is meant, of a folder that holds one its file; by name the files where several are meant, or none.
+
+    Several are `example:all`, and a folder that holds more than one.
+    """
     if robot == f"{EXAMPLE}all":
-        return examples()
-    files = robots_in(robot) if robot.strip() and Path(robot).is_dir() else {}
-    return files if len(files) > 1 else {}
+        return robot, examples()
+    try:
+        folder = Path(robot).expanduser()
+        files = robots_in(folder) if robot.strip() and folder.is_dir() else {}
+    except (OSError, RuntimeError, ValueError):  # a name too long, no such home, a zero byte: who reads it says so
+        files = {}
+    one = next((str(path) for name, path in files.items() if not name.endswith("/")), robot)
+    return (robot, files) if len(files) > 1 else (one, {})
 
 
 def _may_be_a_file(path: Path) -> bool:

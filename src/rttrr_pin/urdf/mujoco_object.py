@@ -27,7 +27,8 @@ from rttrr_pin.core.joint import JointEffects, Limits, Mimic
 from rttrr_pin.core.joints import CONTINUOUS, FLOATING, PRISMATIC, REVOLUTE
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import FLOAT
-from rttrr_pin.urdf.object_tree import ObjectTree, limit, listed
+from rttrr_pin.errors import listed
+from rttrr_pin.urdf.object_tree import ObjectTree, limit
 
 FREE, BALL, SLIDE, HINGE = range(4)
 """`mjtJoint`."""

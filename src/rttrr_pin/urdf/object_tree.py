@@ -16,16 +16,13 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joint import Joint, JointEffects, Limits, Mimic
 from rttrr_pin.core.joints import FIXED, JointType
 from rttrr_pin.core.model import Link, Model, Note
-from rttrr_pin.errors import InputError, UrdfError, shortened
+from rttrr_pin.errors import InputError, UrdfError, listed, shortened
 
 ROUNDED, NEARLY = 8 * float(np.finfo(float).eps), 1e-9
 """How far a matrix may be from the nearest rotation to be taken as it stands, and to be taken at all."""
 
 UNLIMITED = 1e300
 """Libraries write the largest double where there is no limit."""
-
-SHOWN = 6
-"""Names that a note lists."""
 
 
 class ObjectTree:
@@ -194,9 +191,3 @@ class ObjectTree:
 def limit(value: float) -> float:
     """A limit, infinite where a library writes the largest double."""
     return float(value) if abs(value) < UNLIMITED else float(np.copysign(np.inf, value))
-
-
-def listed(items: Sequence[str]) -> str:
-    """The first of them, and how many more."""
-    more = f" and {len(items) - SHOWN} more" if len(items) > SHOWN else ""
-    return ", ".join(items[:SHOWN]) + more

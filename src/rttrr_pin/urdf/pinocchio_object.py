@@ -26,8 +26,8 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joint import JointEffects, Limits, Mimic
 from rttrr_pin.core.joints import CONTINUOUS, FLOATING, PLANAR, PRISMATIC, REVOLUTE, JointType
 from rttrr_pin.core.model import Model
-from rttrr_pin.errors import shortened
-from rttrr_pin.urdf.object_tree import ObjectTree, limit, listed
+from rttrr_pin.errors import listed, shortened
+from rttrr_pin.urdf.object_tree import ObjectTree, limit
 
 X, Y, Z = np.eye(3)
 

@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from rttrr_pin.core.model import Model, Note
-from rttrr_pin.errors import InputError, UnknownNameError, UrdfError, shortened
+from rttrr_pin.errors import InputError, UnknownNameError, UrdfError, listed, shortened
 from rttrr_pin.urdf import catalogue, xacro
 from rttrr_pin.urdf.catalogue import EXAMPLE
 from rttrr_pin.urdf.files import read_limited
@@ -222,9 +222,8 @@ def _only_robot(folder: Path) -> Path:
     if not robots:
         raise UrdfError(f"holds no robot, and {', '.join(entries)} cannot be read", source=shortened(str(folder)))
     if len(robots) > 1:
-        names = ", ".join(list(robots)[:12]) + (f", ... ({len(robots)} in all)" if len(robots) > 12 else "")
         raise UrdfError(
-            f"is a folder with {len(robots)} robots ({names}): name one of them, or call load_all for all",
+            f"is a folder with {len(robots)} robots ({listed(robots, 12)}): name one of them, or call load_all for all",
             source=shortened(str(folder)),
         )
     return next(iter(robots.values()))

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from rttrr_pin.core.joints import JOINT_TYPES
-from rttrr_pin.errors import shortened
+from rttrr_pin.errors import listed, shortened
 from rttrr_pin.urdf.document import UrdfJoint, UrdfLink
 from rttrr_pin.urdf.elements import Element
 
@@ -43,13 +43,13 @@ def check_tree(
     reached = {root: _reached(root, on_link) for root in roots}
     kept = max(reached.values(), key=len, default=_reached(next(iter(links)), on_link))
     if len(roots) > 1:
-        rest = ", ".join(shortened(root) for root in roots[:6])
+        rest = listed(map(shortened, roots))
         message = f"has {len(roots)} root links ({rest}), expected one: join them with fixed joints"
         robot.error("tree", message, f"the {len(kept)} links on {next(iter(kept))!r} are read, the others left out")
     # From a root no loop can be entered, since each link has one parent.
     looped = links.keys() - set[str]().union(*reached.values())
     if looped:
-        loop = ", ".join(sorted(looped)[:6])
+        loop = listed(sorted(looped))
         what = "a loop of joints" if roots else "no root link, and a loop of joints"
         message = f"has {what} through {loop}: a URDF is a tree; cut the loop at one joint"
         left_out = f"the {len(kept)} links on {next(iter(kept))!r} are read, the others left out"

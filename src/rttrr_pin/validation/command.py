@@ -12,8 +12,9 @@ import click
 from rttrr_pin.errors import InputError
 from rttrr_pin.reporting.options import flag, outcome, robot, seed
 from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json
+from rttrr_pin.reporting.results import counted
 from rttrr_pin.robot import Robot
-from rttrr_pin.urdf.catalogue import several
+from rttrr_pin.urdf.catalogue import one_or_several
 from rttrr_pin.validation.options import RunOptions, conditions, drawn, payload, programs
 
 STATES = 10_000
@@ -38,8 +39,8 @@ def validate(states: int, json: str | None, quiet: bool, full: bool, **run: Any)
     from rttrr_pin.validation import run as comparing
     from rttrr_pin.validation.report import show_validation
 
+    run["robot"], robots = one_or_several(run["robot"])
     options = RunOptions(**run)
-    robots = several(options.robot)
     if robots:
         options.check_target(json, robots.values())
         return _validate_several(robots, options, states, json, quiet, full)
@@ -106,9 +107,8 @@ def _faults(robot: Robot, options: RunOptions) -> list[str]:
     from rttrr_pin.inspection.telling import count_errors
 
     errors = count_errors(robot.model.document)
-    count = "1 error" if errors == 1 else f"{errors} errors"
     look = options.command("inspect", ("xacro", "xacro_arg", "package"))
-    return [f"inspect finds {count} in this file: {look}"] if errors else []
+    return [f"inspect finds {counted(errors, 'error')} in this file: {look}"] if errors else []
 
 
 def _validate_several(

@@ -40,7 +40,7 @@ def show_validation(result: Validation, console: Console, rerun: str = "", full:
     """
     states = drawn(result.n_states, result.sampling, result.seed)
     header = f"{result.subject} against {result.reference}: {states}, payload {result.payload}{_unusual(result)}"
-    console.print(Text(result.robot, "bold"), Text(header))
+    console.print(Text(f"{result.robot}:", "bold"), Text(header))
     places = _places(result)
     console.print(_table(result, places if full else _worst_of_each_quantity(places)))
     for line in (*result.notes, LEGEND, *([] if full else [f"the worst of {len(places)} rows; --full shows all"])):
@@ -210,7 +210,7 @@ def _off(deviation: Deviation) -> str:
 def show_state(report: StateReport, console: Console) -> None:
     """One state: its coordinates, then each quantity, the subject beside each reference."""
     others = ", ".join(one.reference for one in report.comparisons)
-    console.print(Text(report.robot, "bold"), Text(f"state {report.index}: {report.subject} against {others}"))
+    console.print(Text(f"{report.robot}:", "bold"), Text(f"state {report.index}: {report.subject} against {others}"))
     console.print(_coordinates_table(report))
     for load in report.batch.loads:
         axes = "base axes" if load.in_base else "link axes"

@@ -37,7 +37,7 @@ def show_derivation(derivation: Derivation, seconds: float, written: Mapping[str
         console: where to print.
     """
     console.print(
-        Text(derivation.robot.model.name, "bold"), Text(f"{derivation.form} form ({derivation.reason}), SI units")
+        Text(f"{derivation.robot.model.name}:", "bold"), Text(f"{derivation.form} form ({derivation.reason}), SI units")
     )
     table = Table("quantity", "meaning", "entries", "terms", "longest")
     for column in (2, 3, 4):
