@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -23,6 +23,9 @@ SAME = 1e-12
 
 UNIT = 1e-3
 """Relative: how near a fitted factor is to that of a unit whose name is told."""
+
+WORDS = {"a million": 1e6, "a millionth": 1e-6, "twice": 2.0, "half": 0.5, "the sign": -1.0}
+"""Factors that have a name."""
 
 
 def with_links(variant: Variant, links: Mapping[int, Link]) -> Variant:
@@ -80,10 +83,9 @@ def line_of(model: Model, link: str | None = None, joint: str | None = None) -> 
 
 def unit_of(factor: float, units: Mapping[str, float]) -> str:
     """The unit, or word, whose factor this is, or one over this; empty where there is none."""
-    for name, own in units.items():
-        if any(abs(factor * x - 1.0) < UNIT for x in (own, 1.0 / own)):
-            return name
-    return ""
+    direct = (name for name, own in units.items() if abs(factor / own - 1.0) < UNIT)
+    inverse = (name for name, own in units.items() if abs(factor * own - 1.0) < UNIT)
+    return next(direct, next(inverse, ""))
 
 
 def told_factor(factor: float, units: Mapping[str, float]) -> dict[str, float | str]:
@@ -95,3 +97,16 @@ def told_factor(factor: float, units: Mapping[str, float]) -> dict[str, float | 
 def with_gravity(variant: Variant, gravity: Array) -> Variant:
     """The program in another gravity field."""
     return replace(variant, model=variant.model.with_gravity(gravity))
+
+
+def told_first(x: Sequence[float], units: Mapping[str, float]) -> dict[str, float | str]:
+    """The same of the only number that is fitted."""
+    return told_factor(float(x[0]), units)
+
+
+def named(model: Model, indices: tuple[int, ...]) -> tuple[str | None, str]:
+    """The joint's name, if it is one, and what a sentence calls them."""
+    if len(indices) == 1:
+        name = model.joints[indices[0]].name
+        return name, name
+    return None, "every joint"

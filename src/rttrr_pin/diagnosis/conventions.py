@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from rttrr_pin.core.model import Model
 from rttrr_pin.diagnosis.base_conventions import base_conventions
+from rttrr_pin.diagnosis.equation_terms import equation_terms
 from rttrr_pin.diagnosis.gravity import gravities
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.joint_order import orders
@@ -18,6 +19,7 @@ def conventions(model: Model) -> list[Hypothesis]:
         return [*gravities(model), *wrench_conventions(model), *payload_conventions(model)]
     return [
         *gravities(model),
+        *equation_terms(model),
         *signs_and_units(model),
         *orders(model),
         *base_conventions(model),

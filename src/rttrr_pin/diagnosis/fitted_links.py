@@ -14,14 +14,12 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.identification import INERTIAL
 from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.core.model import Link, Model
-from rttrr_pin.diagnosis.altering import TEN, inertial_parameters, line_of, link_of, told_factor, with_links
+from rttrr_pin.diagnosis.altering import TEN, WORDS, inertial_parameters, line_of, link_of, told_factor, with_links
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.variant import Variant
 from rttrr_pin.inspection.plausibility import LENGTH_UNITS
 from rttrr_pin.inspection.readings import MASS_UNITS, TENSOR_UNITS
 from rttrr_pin.urdf.inertial import ENTRIES
-
-WORDS = {"a thousand": 1e3, "a million": 1e6, "twice": 2.0}
 
 MASSES, LENGTHS, TENSORS = MASS_UNITS | WORDS, LENGTH_UNITS | WORDS, TENSOR_UNITS | WORDS
 

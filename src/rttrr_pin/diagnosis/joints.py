@@ -7,20 +7,14 @@ from dataclasses import replace
 from functools import partial
 from typing import Any
 
-import numpy as np
-
-from rttrr_pin.core.algebra import Vector
-from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.dynamics import body_of, joint_effects, mimicked
 from rttrr_pin.core.joint import EFFECTS, Joint, JointEffects
-from rttrr_pin.core.joints.base import JointState
 from rttrr_pin.core.model import Model
-from rttrr_pin.core.scalars import FLOAT, columns
-from rttrr_pin.diagnosis.altering import line_of, with_joints
+from rttrr_pin.diagnosis.altering import line_of, named, with_joints
+from rttrr_pin.diagnosis.columns import added, scaled, tau_scaled
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
+from rttrr_pin.diagnosis.mimics import mimics
 from rttrr_pin.diagnosis.slots import Slots, single, slots
-from rttrr_pin.diagnosis.variant import Values, Variant
-from rttrr_pin.implementations.protocol import Batch
+from rttrr_pin.diagnosis.variant import Variant
 
 WHAT = {"armature": "armature", "damping": "viscous friction", "friction": "Coulomb friction"}
 """What each effect is called."""
@@ -31,7 +25,7 @@ START = 0.1
 
 def joints(model: Model) -> list[Hypothesis]:
     """All hypotheses on what the joints of a robot add to tau."""
-    return [*_effects(model), *_springs(model), *_gears(model), *_mimics(model)]
+    return [*_effects(model), *_springs(model), *_gears(model), *mimics(model)]
 
 
 def _effects(model: Model) -> Iterator[Hypothesis]:
@@ -45,23 +39,16 @@ def _effects(model: Model) -> Iterator[Hypothesis]:
         yield from (_of_size(model, effect, (i,)) for i in moving)
         if len(moving) > 1:
             yield _of_size(model, effect, moving)
+    yield from _friction_of_the_file(model)
     for several in (("damping", "friction"), EFFECTS):
         having = tuple(i for i in moving if any(getattr(model.joints[i].effects, own) for own in several))
         if sum(any(getattr(model.joints[i].effects, own) for i in moving) for own in several) > 1:
             yield _ignored(model, several, having)
 
 
-def _named(model: Model, indices: tuple[int, ...]) -> tuple[str | None, str]:
-    """The joint's name, if it is one, and what a sentence calls them."""
-    if len(indices) == 1:
-        name = model.joints[indices[0]].name
-        return name, name
-    return None, "every joint"
-
-
 def _ignored(model: Model, effects: Sequence[str], indices: tuple[int, ...]) -> Hypothesis:
     """The program counts none of these."""
-    joint, name = _named(model, indices)
+    joint, name = named(model, indices)
     what = " and ".join(filter(None, (", ".join(WHAT[own] for own in effects[:-1]), WHAT[effects[-1]])))
     verb = "is" if len(effects) == 1 else "are"
     own = {effect: [float(getattr(model.joints[i].effects, effect)) for i in indices] for effect in effects}
@@ -95,7 +82,7 @@ def _without(variant: Variant, x: Sequence[float], effects: tuple[str, ...], ind
 
 def _of_size(model: Model, effect: str, indices: tuple[int, ...]) -> Hypothesis:
     """The program adds so much more."""
-    joint, name = _named(model, indices)
+    joint, name = named(model, indices)
     own = [float(getattr(model.joints[i].effects, effect)) for i in indices]
     counted = any(own)
     sentence = f"the {WHAT[effect]} of {name} is another" if counted else f"{name} has {WHAT[effect]}"
@@ -125,6 +112,32 @@ def _with_more(variant: Variant, x: Sequence[float], effect: str, indices: tuple
         return replace(joint, effects=effects)
 
     return with_joints(variant, indices, more)
+
+
+def _friction_of_the_file(model: Model) -> Iterator[Hypothesis]:
+    """Damping and friction that the file has and the robot, as it is asked, has not."""
+    left_out = tuple(i for i, joint in enumerate(model.joints) if joint.nv and _with_friction(joint) is not joint)
+    for group in (*((i,) for i in left_out), *([left_out] if len(left_out) > 1 else [])):
+        joint, name = named(model, group)
+        yield Hypothesis(
+            id="friction of the file" + ("" if joint else " at every joint"),
+            kind="joint",
+            sentence=f"damping and friction of {name}, as the file has them, are counted",
+            repair="leave damping v + friction sign(v) out, or give the robot the joint effects of the file",
+            apply=partial(_with_friction_of, indices=group),
+            joint=joint,
+            line=line_of(model, joint=joint) if joint else "",
+        )
+
+
+def _with_friction(joint: Joint) -> Joint:
+    """The joint with the damping and friction of its file."""
+    own = replace(joint.effects, damping=joint.dynamics.damping, friction=joint.dynamics.friction)
+    return joint if own == joint.effects else replace(joint, effects=own)
+
+
+def _with_friction_of(variant: Variant, x: Sequence[float], indices: tuple[int, ...]) -> Variant:
+    return with_joints(variant, indices, _with_friction)
 
 
 def _springs(model: Model) -> Iterator[Hypothesis]:
@@ -164,13 +177,6 @@ def _spring_force(variant: Variant, x: Sequence[float], own: Slots) -> Variant:
     return variant.with_output(lambda batch, values: added(values, own.v, float(x[0])))
 
 
-def added(values: Values, at: Sequence[int], force: Array | float) -> Values:
-    """Values with a force more at some rates."""
-    tau = values["tau"].copy()
-    tau[:, at] += force
-    return {**values, "tau": tau}
-
-
 def _gears(model: Model) -> Iterator[Hypothesis]:
     """Coordinates of the motor in place of those of the joint."""
     for own in single(slots(model)):
@@ -188,111 +194,5 @@ def _gears(model: Model) -> Iterator[Hypothesis]:
 
 
 def _geared(variant: Variant, x: Sequence[float], own: Slots) -> Variant:
-    ratio = float(x[0])
-
-    def inputs(batch: Batch) -> Batch:
-        q, v, a = (y.copy() for y in (batch.q, batch.v, batch.a))
-        q[:, own.q] *= ratio
-        for y in (v, a):
-            y[:, own.v] *= ratio
-        return replace(batch, q=q, v=v, a=a)
-
-    def outputs(batch: Batch, values: Values) -> Values:
-        return {**values, "tau": np.where(np.isin(np.arange(batch.model.nv), own.v), ratio, 1.0) * values["tau"]}
-
-    return variant.with_input(inputs).with_output(outputs)
-
-
-FOLLOWS = (
-    (
-        "mimic ignored", "{joint} stands still at 0, and its force is not passed on to the joint that it follows",
-        "let {joint} follow, with multiplier and offset", {"multiplier": 0.0, "offset": 0.0},
-    ),
-    (
-        "multiplier of mimic ignored", "{joint} follows with multiplier 1", "use the multiplier of {joint}",
-        {"multiplier": 1.0},
-    ),
-    (
-        "sign of mimic ignored", "{joint} follows with a multiplier of the opposite sign",
-        "use the sign of the multiplier of {joint}", None,
-    ),
-    (
-        "offset of mimic ignored", "{joint} follows without its offset", "add the offset of {joint}", {"offset": 0.0},
-    ),
-)  # fmt: skip
-"""Name, sentence, repair, and the numbers of the mimic as the program has them; None for minus the multiplier."""
-
-
-def _mimics(model: Model) -> Iterator[Hypothesis]:
-    """Joints that follow another."""
-    followers = tuple(i for i, joint in enumerate(model.joints) if joint.mimic is not None)
-    for name, sentence, repair, numbers in FOLLOWS:
-        changed = tuple(i for i in followers if _follows(model.joints[i], numbers).mimic != model.joints[i].mimic)
-        groups = [(i,) for i in changed] + ([changed] if len(changed) > 1 else [])
-        for group in groups:
-            joint, label = _named(model, group)
-            label = label if joint else "every joint that follows another"
-            yield Hypothesis(
-                id=name + ("" if joint else " at every joint"),
-                kind="joint",
-                sentence=sentence.format(joint=label),
-                repair=repair.format(joint=label),
-                apply=partial(_following, numbers=numbers, indices=group),
-                joint=joint,
-                line=line_of(model, joint=joint) if joint else "",
-            )
-    yield from (_not_transmitted(model, i) for i in followers)
-
-
-def _follows(joint: Joint, numbers: Mapping[str, float] | None) -> Joint:
-    """The joint with other numbers of its mimic."""
-    mimic = joint.mimic
-    if mimic is None:
-        return joint
-    own: dict[str, Any] = {"multiplier": -mimic.multiplier} if numbers is None else dict(numbers)
-    return replace(joint, mimic=replace(mimic, **own))
-
-
-def _following(
-    variant: Variant, x: Sequence[float], numbers: Mapping[str, float] | None, indices: tuple[int, ...]
-) -> Variant:
-    return with_joints(variant, indices, lambda joint: _follows(joint, numbers))
-
-
-def _not_transmitted(model: Model, i: int) -> Hypothesis:
-    """The follower moves, and whatever drives it is no part of tau."""
-    name = model.joints[i].name
-    return Hypothesis(
-        id="force of mimic ignored",
-        kind="joint",
-        sentence=f"what drives {name} is not passed on to the joint that it follows",
-        repair=f"add the multiplier of {name} times its force to tau of the joint that it follows",
-        apply=partial(_without_force, i=i),
-        joint=name,
-        line=line_of(model, joint=name),
-    )
-
-
-def _without_force(variant: Variant, x: Sequence[float], i: int) -> Variant:
-    model = variant.model
-
-    def outputs(batch: Batch, values: Values) -> Values:
-        return _taken(model, i, variant.given(batch), values)
-
-    return variant.with_output(outputs)
-
-
-def _taken(model: Model, i: int, batch: Batch, values: Values) -> Values:
-    """Tau without the force of a follower."""
-    joint = model.joints[i]
-    mimic = joint.mimic
-    if mimic is None:
-        return values
-    leader = next(own for own in slots(model) if own.index == mimic.joint)
-    states = (columns(y[:, at]) for y, at in ((batch.q, leader.q), (batch.v, leader.v), (batch.a, leader.v)))
-    state = mimicked(mimic, JointState(*(list(y) for y in states)), FLOAT)
-    f, n = (Vector(*columns(values[key][:, i])) for key in ("f", "n"))
-    (force,) = joint.type.driving_force(body_of(joint, model.links[i], FLOAT), f, n)
-    (own,) = joint_effects(joint.effects, state, FLOAT)
-    total: Any = (force + own) * -mimic.multiplier
-    return added(values, leader.v[:1], np.reshape(total, (-1, 1)))
+    q, v = dict.fromkeys(own.q, float(x[0])), dict.fromkeys(own.v, float(x[0]))
+    return tau_scaled(scaled(variant, q, v, v), v)

@@ -2,28 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from math import pi
 from typing import Any
 
-import numpy as np
-
-from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
-from rttrr_pin.diagnosis.altering import line_of, told_factor, with_gravity
+from rttrr_pin.diagnosis.altering import WORDS, line_of, told_first
+from rttrr_pin.diagnosis.columns import scaled, tau_scaled
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.slots import Slots, single, slots
-from rttrr_pin.diagnosis.variant import Values, Variant, run
+from rttrr_pin.diagnosis.variant import Variant
 from rttrr_pin.implementations.protocol import Batch
 
 DEGREE = pi / 180.0
 
 FORCES = {"mN m": 1e3, "N cm": 1e2, "kgf m": 9.80665, "lbf ft": 1.3558179483314004, "lbf in": 0.1129848290276167}
 """What a factor of tau may come from; one for 1 N m, or the other way round."""
-
-WORDS = {"a million": 1e6, "twice": 2.0, "the sign": -1.0}
 
 GIVEN_QUARTERS = (90, -90, 180)
 """Degrees by which the zero of a joint may be off: those that tables of DH parameters bring."""
@@ -32,123 +28,12 @@ GIVEN_QUARTERS = (90, -90, 180)
 def signs_and_units(model: Model) -> Iterator[Hypothesis]:
     """All of them."""
     own = slots(model)
-    yield from _terms(model)
     yield from _units(own)
     yield from _of_tau(own)
     for joint in own:
         yield from _of_joint(model, joint)
     for joint in single(own):
         yield from _zeros(model, joint)
-
-
-def scaled(variant: Variant, q: Mapping[int, float], v: Mapping[int, float], a: Mapping[int, float]) -> Variant:
-    """The program whose inputs are multiplied by factors, by column."""
-
-    def inputs(batch: Batch) -> Batch:
-        return replace(batch, q=_times(batch.q, q), v=_times(batch.v, v), a=_times(batch.a, a))
-
-    return variant.with_input(inputs)
-
-
-def tau_scaled(variant: Variant, factors: Mapping[int, float]) -> Variant:
-    """The program whose tau is multiplied by factors, by column."""
-    return variant.with_output(lambda batch, values: {**values, "tau": _times(values["tau"], factors)})
-
-
-def _times(x: Array, factors: Mapping[int, float]) -> Array:
-    if not factors:
-        return x
-    row = np.ones(x.shape[1])
-    row[list(factors)] = list(factors.values())
-    return x * row
-
-
-@dataclass(frozen=True, slots=True)
-class Term:
-    """What of the equation of motion is left out: rates, accelerations, gravity."""
-
-    id: str
-    sentence: str
-    repair: str
-    v: bool = False
-    a: bool = False
-    gravity: bool = False
-
-
-TERMS = (
-    Term("rates ignored", "rates are not counted: tau has no velocity terms", "pass v", v=True),
-    Term("accelerations ignored", "accelerations are not counted: tau is nle, without M a", "pass a", a=True),
-    Term("gravity alone", "tau is gravity compensation alone: neither rates nor accelerations count", "pass v and a",
-         v=True, a=True),
-    Term("M a alone", "tau is M a alone, without nle", "add velocity terms and gravity", v=True, gravity=True),
-    Term("velocity terms alone", "tau is made of velocity terms alone", "add M a and gravity", a=True, gravity=True),
-)  # fmt: skip
-
-
-def _terms(model: Model) -> Iterator[Hypothesis]:
-    """Terms left out, and factors of them."""
-    for term in TERMS:
-        if not term.gravity or model.gravity.any():
-            yield Hypothesis(term.id, "convention", term.sentence, term.repair, partial(_without, term=term))
-    yield Hypothesis(
-        id="factor of a",
-        kind="convention",
-        sentence="a is multiplied by a factor",
-        repair="pass a as it is",
-        apply=lambda variant, x: scaled(variant, {}, {}, dict.fromkeys(range(model.nv), float(x[0]))),
-        start=(1.5,),
-        neutral=(1.0,),
-        values=_factor(WORDS),
-    )
-    yield Hypothesis(
-        id="factor of v",
-        kind="convention",
-        sentence="v is multiplied by a factor",
-        repair="pass v as it is",
-        apply=lambda variant, x: scaled(variant, {}, dict.fromkeys(range(model.nv), float(x[0])), {}),
-        start=(1.5,),
-        neutral=(1.0,),
-        values=_factor(WORDS),
-    )
-    yield Hypothesis(
-        id="factor of velocity terms",
-        kind="convention",
-        sentence="velocity terms are multiplied by a factor",
-        repair="add velocity terms once, with sign +",
-        apply=_velocity_terms,
-        start=(1.5,),
-        neutral=(1.0,),
-        values=_factor(WORDS),
-    )
-
-
-def _without(variant: Variant, x: Sequence[float], term: Term) -> Variant:
-    def inputs(batch: Batch) -> Batch:
-        v = np.zeros_like(batch.v) if term.v else batch.v
-        a = np.zeros_like(batch.a) if term.a else batch.a
-        return replace(batch, v=v, a=a)
-
-    return (with_gravity(variant, np.zeros(3)) if term.gravity else variant).with_input(inputs)
-
-
-def _velocity_terms(variant: Variant, x: Sequence[float]) -> Variant:
-    """What results without rates, and a factor times the rest."""
-    factor = float(x[0])
-
-    def outputs(batch: Batch, values: Values) -> Values:
-        given = variant.given(batch)
-        still = run(variant.model, replace(given, v=np.zeros_like(given.v)), variant.mutations)
-        for own in variant.outputs:
-            still = own(batch, still)
-        return {
-            key: still[key] + factor * (values[key] - still[key]) if factor != 1.0 else values[key] for key in values
-        }
-
-    return variant.with_output(outputs)
-
-
-def _factor(units: Mapping[str, float]) -> Callable[[Sequence[float]], Mapping[str, Any]]:
-    return lambda x: told_factor(float(x[0]), units)
 
 
 @dataclass(frozen=True, slots=True)
@@ -223,7 +108,7 @@ def _of_tau(own: Sequence[Slots]) -> Iterator[Hypothesis]:
             apply=partial(_tau_factor, columns=columns),
             start=(2.0,),
             neutral=(1.0,),
-            values=_factor(FORCES | WORDS),
+            values=partial(told_first, units=FORCES | WORDS),
         )
 
 
@@ -271,7 +156,7 @@ def _of_joint(model: Model, joint: Slots) -> Iterator[Hypothesis]:
         joint=name,
         start=(2.0,),
         neutral=(1.0,),
-        values=_factor(FORCES | WORDS),
+        values=partial(told_first, units=FORCES | WORDS),
     )
 
 

@@ -1,0 +1,189 @@
+"""The catalogues of conventions, parameters, joints and placements: what holds of each of their hypotheses."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+import rttrr_pin
+from rttrr_pin import Robot
+from rttrr_pin.core.model import Model
+from rttrr_pin.core.payload import Load
+from rttrr_pin.diagnosis.conventions import conventions
+from rttrr_pin.diagnosis.hypothesis import Hypothesis
+from rttrr_pin.diagnosis.joints import joints
+from rttrr_pin.diagnosis.parameters import parameters
+from rttrr_pin.diagnosis.placements import placements
+from rttrr_pin.diagnosis.variant import Values, Variant
+from rttrr_pin.implementations.protocol import Batch
+from rttrr_pin.validation.sampling import Sampler
+from support.robots import driven
+from support.serial_chains import random_chain
+from support.trees import random_tree
+
+CATALOGUES = (conventions, parameters, joints, placements)
+
+MOVING = ("revolute", "continuous", "prismatic", "fixed")
+
+CLOSE = 1e-9
+"""Relative to the largest number of a quantity."""
+
+UNSEEN = 1e-7
+
+
+def _twins() -> Robot:
+    """Two arms whose links are called left and right."""
+    text = random_tree(5, 5, ("revolute",), mimics=False)
+    names = {"link_0": "left_arm", "link_1": "right_arm"}
+    for old, new in names.items():
+        text = text.replace(f'"{old}"', f'"{new}"')
+    return rttrr_pin.load(text)
+
+
+@cache
+def robots() -> dict[str, Robot]:
+    tree = rttrr_pin.load(random_tree(3, 4, MOVING))
+    return {
+        "rttrr": rttrr_pin.load("rttrr"),
+        "serial": rttrr_pin.load(random_chain(4, ("revolute",) * 4 + ("fixed",))),
+        "tree": rttrr_pin.load(random_tree(1, 5, MOVING, mimics=False)),
+        "mimic": driven(rttrr_pin.load(random_tree(11, 6, ("revolute", "prismatic")))),
+        "frictionless": Robot(rttrr_pin.load(random_tree(2, 4, MOVING)).model.without_friction()),
+        "all types": rttrr_pin.load(random_tree(39, 6)),
+        "floating": Robot(tree.model.with_floating_base()),
+        "twins": _twins(),
+    }
+
+
+NAMES = ("rttrr", "serial", "tree", "mimic", "frictionless", "all types", "floating", "twins")
+
+
+def hypotheses(model: Model) -> list[Hypothesis]:
+    return [one for catalogue in CATALOGUES for one in catalogue(model)]
+
+
+@cache
+def batch(name: str) -> Batch:
+    """Random states, a payload in link axes and one in base axes."""
+    model = robots()[name].model
+    own = Sampler(model, seed=3).draw(0, 5)
+    rng = np.random.default_rng(4)
+    depth = [len(list(model.path(i))) for i in range(len(model.links))]
+    deepest = depth.index(max(depth))
+    massive = max(range(len(depth)), key=lambda i: (bool(model.links[i].com.any()), depth[i]))
+    loads = (
+        Load(massive, rng.uniform(-50, 50, (5, 3)), rng.uniform(-10, 10, (5, 3))),
+        Load(deepest, rng.uniform(-50, 50, 3), rng.uniform(-10, 10, 3), in_base=True),
+    )
+    return replace(own, loads=loads)
+
+
+def gap(x: Values, y: Values) -> float:
+    """The largest difference, relative to the largest number of its quantity."""
+    return max(float(np.abs(x[key] - y[key]).max() / (np.abs(y[key]).max() or 1.0)) for key in y if y[key].size)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_identifiers_are_unique(name: str) -> None:
+    keys = [(one.id, one.link, one.joint) for one in hypotheses(robots()[name].model)]
+    assert len(keys) > 100
+    assert len(set(keys)) == len(keys), {key for key in keys if keys.count(key) > 1}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_neutral_numbers_are_the_reference(name: str) -> None:
+    own = batch(name)
+    plain = Variant(own.model)
+    reference = plain.evaluate(own)
+    for one in hypotheses(own.model):
+        assert len(one.start) == len(one.neutral)
+        if one.neutral:
+            assert gap(one.apply(plain, one.neutral).evaluate(own), reference) < CLOSE, one.sentence
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_each_changes_a_number(name: str) -> None:
+    """Those that are not linear in inertial parameters, at random states with payloads; no input is changed in place."""
+    own = batch(name)
+    plain = Variant(own.model)
+    reference = plain.evaluate(own)
+    kept = [x.copy() for x in (own.q, own.v, own.a, *reference.values())]
+    unseen = [
+        (one.id, one.link, one.joint)
+        for one in hypotheses(own.model)
+        if one.parameters is None and gap(one.apply(plain, one.start).evaluate(own), reference) < UNSEEN
+    ]
+    assert not unseen
+    for x, y in zip(kept, (own.q, own.v, own.a, *reference.values()), strict=True):
+        assert np.array_equal(x, y)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_parameters_are_what_apply_does(name: str) -> None:
+    """They are the difference of the two robots' parameters, and tau by the regressor is tau by the recursion."""
+    own, robot = replace(batch(name), loads=()), robots()[name]
+    plain = Variant(own.model)
+    reference, before = plain.evaluate(own)["tau"], robot.inertial_parameters()
+    Y = robot.regressor(own.q, own.v, own.a)
+    told = [one for one in parameters(own.model) if one.parameters is not None]
+    assert len(told) > 20
+    for k, one in enumerate(told):
+        assert one.parameters is not None
+        assert one.parameters.shape == ((len(one.start),) if one.start else ()) + before.shape
+        change = np.array(one.start) @ one.parameters if one.start else one.parameters
+        altered = one.apply(plain, one.start)
+        after = Robot(altered.model).inertial_parameters()
+        assert change.any(), one.id
+        assert np.abs(after - before - change).max() < CLOSE * max(np.abs(after).max(), np.abs(before).max()), one.id
+        if k % 7 == 0:
+            tau = altered.evaluate(own)["tau"]
+            size = max(np.abs(tau).max(), np.abs(reference).max())
+            assert np.abs(tau - reference - Y @ change).max() < CLOSE * size, (one.id, one.link)
+
+
+@pytest.mark.parametrize("name", ["rttrr", "mimic"])
+def test_two_are_applied_one_after_the_other(name: str) -> None:
+    """The second says something of the program that the first leaves, and nothing of the first is lost."""
+    own = batch(name)
+    plain = Variant(own.model)
+    some = hypotheses(own.model)[:: max(1, len(hypotheses(own.model)) // 16)]
+    for first in some:
+        one = first.apply(plain, first.start)
+        for second in some[::4]:
+            both = second.apply(one, second.start)
+            back = second.apply(one, second.neutral) if second.neutral else one
+            assert gap(back.evaluate(own), one.evaluate(own)) < CLOSE, (first.id, second.id)
+            assert len(both.model.links) == len(own.model.links)
+            assert set(both.evaluate(own)) == set(back.evaluate(own))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_sentences_are_told_with_numbers(name: str) -> None:
+    for one in hypotheses(robots()[name].model):
+        for text in (one.id, one.sentence, one.repair):
+            assert text
+            assert "{" not in text
+            assert "array" not in text
+        values = one.values(one.start)
+        assert not one.start or values, one.id
+
+
+def test_a_large_tree_takes_half_a_second() -> None:
+    model = rttrr_pin.load(random_tree(8, 60, MOVING)).model
+    hypotheses(robots()["rttrr"].model)
+    begin = time.process_time()
+    many = hypotheses(model)
+    assert time.process_time() - begin < 1.0
+    assert len(many) > 3000
+
+
+def test_lines_are_those_of_the_file() -> None:
+    robot = robots()["rttrr"]
+    told = {one.line for one in parameters(robot.model) if one.link == "link_2"}
+    assert len(told) == 1
+    line = int(told.pop().split()[1])
+    assert 'name="link_2"' in robot.model.urdf.splitlines()[line - 1]
