@@ -10,6 +10,7 @@ import rttrr_pin
 from rttrr_pin.core.model import Model
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.levers import levers
+from rttrr_pin.diagnosis.mechanics import mechanics
 from rttrr_pin.diagnosis.neighbours import neighbours
 from rttrr_pin.diagnosis.states import sample_states
 from rttrr_pin.diagnosis.variant import Variant
@@ -30,6 +31,13 @@ def assert_same(robot: str, own: Callable[[Model], Hypothesis], program: planted
 
 def test_a_force_at_the_next_joint_is_what_the_toolbox_did() -> None:
     assert_same("modified_dh", lambda m: levers(m)[0], planted.newton_euler("modified_dh", lever_of_next=True))
+
+
+def test_one_term_of_three_that_is_turned_is_what_the_toolbox_did() -> None:
+    def own(model: Model) -> Hypothesis:
+        return next(one for one in mechanics(model) if one.id.startswith("outwards: turn the first term alone"))
+
+    assert_same("modified_dh", own, planted.newton_euler("modified_dh", partly_turned=True))
 
 
 def test_a_tensor_that_is_not_turned_is_what_fusing_without_turning_gives() -> None:

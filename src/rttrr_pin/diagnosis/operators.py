@@ -178,6 +178,8 @@ def _of_operation(node: ast.BinOp, inner: bool) -> Iterator[Error]:
         if left.endswith(".I"):
             entries = ", ".join(f"{left}.rows[{k}].{x} * ({right}).{x}" for k, x in enumerate("xyz"))
             yield Error("keep the diagonal of", f"{left} in {whole}", f"Vector({entries})", node.lineno)
+        if is_sum(node.right):
+            yield from _partly(node, left)
     elif isinstance(node.op, ast.Mult) and isinstance(node.right, ast.Constant):
         yield Error("forget the factor of", whole, left, node.lineno)
     elif is_sum(node) and not inner:
@@ -185,6 +187,17 @@ def _of_operation(node: ast.BinOp, inner: bool) -> Iterator[Error]:
         for k, (_, term) in enumerate(terms(node)):
             for operator in ("drop", "negate"):
                 yield Error(operator, parts[k][1], _sum_with(parts, {k: operator}), term.lineno, k)
+
+
+def _partly(node: ast.BinOp, matrix: str) -> Iterator[Error]:
+    """A product with a sum whose parentheses are forgotten, or that misses a term."""
+    parts = [(sign, ast.unparse(term)) for sign, term in terms(node.right)]
+    products = [(sign, f"({matrix}) @ ({part})") for sign, part in parts]
+    first = summed([products[0], *parts[1:]])
+    yield Error("turn the first term alone of", ast.unparse(node), f"({first})", node.lineno)
+    for k, (sign, part) in enumerate(parts):
+        some = summed([*products[:k], (sign, part), *products[k + 1 :]])
+        yield Error("do not turn", part, f"({some})", node.lineno)
 
 
 def _sum_with(parts: Sequence[tuple[str, str]], changed: Mapping[int, str]) -> str:

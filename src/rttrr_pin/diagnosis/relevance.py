@@ -57,14 +57,17 @@ def _shows(error: Mutation) -> Possible:
     syntax, node = place_of(error)
     levers = error.operator.startswith("take ") and error.expression in LEVERS
     part = node
-    if isinstance(node, ast.expr) and is_sum(node):
-        part = next(term for _, term in terms(node) if ast.unparse(term) == error.expression)
+    whole = node.right if isinstance(node, ast.BinOp) and error.operator == "do not turn" else node
+    if isinstance(whole, ast.expr) and is_sum(whole):
+        part = next(term for _, term in terms(whole) if ast.unparse(term) == error.expression)
     products = (part, *_factors(syntax.around(node)))
     conditions = {condition for x in products for condition in _conditions(x, levers)}
     if levers:
         conditions.add(_levers_differ)
     elif error.operator == "transpose":
         conditions.add(_is_turned)
+    elif error.operator in ("turn the first term alone of", "do not turn"):
+        conditions.add(_differs_in_axes)
     elif error.operator == "keep the diagonal of":
         conditions.add(_has_products)
     return lambda model, i: all(condition(model, i) for condition in conditions)
@@ -113,6 +116,10 @@ def _levers_differ(model: Model, i: int) -> bool:
 def _is_turned(model: Model, i: int) -> bool:
     R = model.joints[i].R
     return turns(model, i) or not np.array_equal(R, R.T)
+
+
+def _differs_in_axes(model: Model, i: int) -> bool:
+    return turns(model, i) or not np.array_equal(model.joints[i].R, np.eye(3))
 
 
 def _has_products(model: Model, i: int) -> bool:

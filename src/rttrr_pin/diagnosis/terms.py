@@ -169,6 +169,11 @@ SENTENCES: dict[str, tuple[str, str]] = {
         "{term} is formed with {wrong} instead of {right}{place}",
         "form {term} with {right}, not {wrong}{place}",
     ),
+    "turn the first term alone of": (
+        "of the terms of {term}, R^T turns the first alone{place}",
+        "turn the sum of all terms of {term}{place}",
+    ),
+    "do not turn": ("{term} is not turned by R^T{place}", "turn {term} by R^T with the other terms{place}"),
     "exchange operands of": (
         "{term} has the operands of its cross product exchanged{place}",
         "exchange the operands of the cross product in {term}{place}",
