@@ -15,10 +15,14 @@ from rttrr_pin import RandomPayload, Robot
 from rttrr_pin.core.joint import Joint, Limits, Mimic
 from rttrr_pin.core.joints import PLANAR, REVOLUTE
 from rttrr_pin.core.model import Link, Model
+from rttrr_pin.core.payload import Load
+from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.errors import ImplementationError, InputError, ModelMismatchError, UnknownNameError
-from rttrr_pin.implementations import make_implementation
+from rttrr_pin.implementations import Batch, make_implementation
 from rttrr_pin.validation import Sampler
-from support.serial_chains import random_chain
+from rttrr_pin.validation.compare import Comparison
+from support.implementations import evaluated
+from support.serial_chains import numbers, random_chain
 from support.tampered import TAMPERED, with_joint, with_link
 from support.tolerances import ROUNDING, norm_error
 from support.trees import random_tree
@@ -124,6 +128,62 @@ def test_turned_fixed_links_in_a_long_row_are_no_mismatch() -> None:
     """Each turn rounds once more: the placement of the last is a product of all."""
     robot = rttrr_pin.load(random_chain(3, ("revolute", *["fixed"] * 250, "revolute")))
     make_implementation("pinocchio", robot.model)
+
+
+LONG = 40
+
+
+def row(kinds: tuple[str, ...], masses: tuple[int, ...], axis: str, xyz: str, rpys: tuple[str, ...]) -> str:
+    """Joints one behind the other, each link a point mass in its origin."""
+    links = "".join(
+        f'<link name="l{i}"><inertial><mass value="{mass}"/>'
+        '<inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>'
+        for i, mass in enumerate((0, *masses))
+    )
+    joints = "".join(
+        f'<joint name="j{i:02}" type="{kind}"><parent link="l{i}"/><child link="l{i + 1}"/>'
+        f'<origin xyz="{xyz}" rpy="{rpy}"/><axis xyz="{axis}"/></joint>'
+        for i, (kind, rpy) in enumerate(zip(kinds, rpys, strict=True))
+    )
+    return f'<robot name="row">{links}{joints}</robot>'
+
+
+def within_rounding(model: Model, q: Any, load: Load) -> None:
+    """At rest; and 1e-12 of the load more is seen."""
+    still, more = np.zeros((len(q), model.nv)), replace(load, f=load.f * (1 + 1e-12), n=load.n * (1 + 1e-12))
+    right, wrong = (evaluated("recursion", model, q, still, still, (x,)) for x in (load, more))
+    got = evaluated("pinocchio", model, q, still, still, (load,))
+    for side, passes in ((right, True), (wrong, False)):
+        compared = Comparison(model, list(QUANTITIES)).differences(Batch(model, q, still, still, (load,)), side, got)
+        assert (max(float(np.max(one.of_tolerance)) for one in compared) <= 1.0) is passes
+
+
+@pytest.mark.parametrize("masses", [(0,) * LONG, (1,) * LONG, (*(0,) * (LONG - 1), 1)], ids=["none", "all", "last"])
+@pytest.mark.parametrize("xyz", ["0 0 0", "0 0 1"])
+@pytest.mark.parametrize("in_base", [False, True])
+def test_what_lies_along_axes_rounds_at_each_joint(in_base: bool, xyz: str, masses: tuple[int, ...]) -> None:
+    """Rotations about -z, which come from 1 - cos q: by the same angle they round in the same direction."""
+    kinds, none = ("continuous",) * LONG, np.zeros(3)
+    robot = rttrr_pin.load(row(kinds, masses, "0 0 -1", xyz, ("0 0 0",) * LONG), (0, 0, -9.81))
+    q = np.repeat(np.random.default_rng(0).uniform(-3, 3, (50, 1)), LONG, axis=1)
+    for f, n in ((np.array([0, 0, 1e3]), none), (none, np.array([0, 0, 1e3]))):
+        within_rounding(robot.model, q, Load(LONG - 1, f, n, in_base))
+
+
+@pytest.mark.parametrize("masses", [(0,) * LONG, (1,) * LONG], ids=["none", "all"])
+@pytest.mark.parametrize("xyz", ["0 0 0", "0.1 0.2 0.3"])
+@pytest.mark.parametrize("in_base", [False, True])
+def test_loads_over_fixed_joints_come_back_in_axes_that_are_rounded(
+    in_base: bool, xyz: str, masses: tuple[int, ...]
+) -> None:
+    """To the body's origin and back: the last fixed joint does not turn, where the recursion rounds nothing."""
+    rng = np.random.default_rng(0)
+    for count in (2, 8):
+        turned = (numbers(rng.uniform(-3, 3, 3)),) * (count - 1)
+        text = row(("fixed",) * count, masses[:count], "1 0 0", xyz, (*turned, "0 0 0"))
+        robot, f = rttrr_pin.load(text, base="floating"), rng.normal(size=(2, 3)) * 1e3
+        for load in (Load(count, f[0], np.zeros(3), in_base), Load(count, np.zeros(3), f[1], in_base)):
+            within_rounding(robot.model, np.eye(7)[6:], load)
 
 
 @pytest.mark.parametrize("mimic", [Mimic(0, -0.7, 0.2), Mimic(0, 0.7, 0.3)], ids=["multiplier", "offset"])

@@ -60,7 +60,7 @@ from rttrr_pin.implementations.pinocchio_model import (
     pin_links,
     snapped_axes,
 )
-from rttrr_pin.implementations.pinocchio_rounding import OPERATIONS, rounding
+from rttrr_pin.implementations.pinocchio_rounding import OPERATIONS, LoadSizes, rounding, turns
 from rttrr_pin.implementations.protocol import Batch, Evaluation
 
 TENSORS = 4
@@ -120,12 +120,15 @@ class Pinocchio:
         loads = self._in_link_axes(batch.loads, motion.q)
         record = self._run(motion, loads)
         F, N = self._net(record)
-        f, n, moments = self._across_joints(record, F, N, loads)
+        sizes = self._sizes(batch)
+        behind = self._behind(record, F, N, loads, sizes)
+        f, n = self._across_joints(record, behind, loads)
         tau, tau_joint = driving_forces(self.model, self.joints, states, record.tau, has_armature=True)
         values = {"tau": tau, "F": F, "N": N, "f": f, "n": n}
-        cancelling = rounding(self.pin_model, self.links, self._apart, record.spatial, self._reach(motion))
+        cancelling = rounding(self.pin_model, self.links, self._apart, record.spatial, self._reach(motion), sizes)
         cancelling["f"][:, self._idle] = cancelling["n"][:, self._idle] = 0.0
-        cancelling["n"] += OPERATIONS * EPS * moments
+        for key, size in self._carrying(behind, sizes).items():
+            cancelling[key] += size
         allowance = of_library(batch, values, tau_joint, cancelling)
         if self.built is not self.model:
             changed = of_other_numbers(batch, self.built)
@@ -145,6 +148,15 @@ class Pinocchio:
                 f, n = (product(turns, x) for x in (f, n))
             out.append(Load(load.link, f, n))
         return out
+
+    def _sizes(self, batch: Batch) -> list[LoadSizes]:
+        """The sizes of the loads; one in base axes was turned over each joint that moves its link."""
+        counts, sizes = turns(self.pin_model), []
+        for load in batch.loads:
+            f, n = (np.broadcast_to(norm(np.atleast_2d(x)), len(batch)) for x in (load.f, load.n))
+            turned = counts[self.links.joint[load.link]] if load.in_base else 0
+            sizes.append(LoadSizes(load.link, f, n, turned))
+        return sizes
 
     def _run(self, motion: Motion, loads: Sequence[Load]) -> _Record:
         """Call `rnea` on each state and keep what it leaves in `data`, whose entries the next call overwrites."""
@@ -182,38 +194,56 @@ class Pinocchio:
         w, w_dot = product(R_T, w), product(R_T, w_dot)
         return F, product(I, w_dot) + np.cross(w, product(I, w))
 
-    def _across_joints(self, record: _Record, F: Array, N: Array, loads: Sequence[Load]) -> tuple[Array, Array, Array]:
-        """f, n: what crosses each joint, moving or fixed; and the moments that round on the way, (N, links).
+    def _across_joints(self, record: _Record, behind: Array, loads: Sequence[Load]) -> tuple[Array, Array]:
+        """f, n: what crosses each joint, moving or fixed.
 
         Pinocchio keeps no force across a fixed joint: it is what moves the links behind it and all that they carry.
-        These forces go to the body's origin, add up there, and go on to the link's: their moments about both round.
+        These forces go to the body's origin, add up there, and go on to the link's.
         """
         links, fixed = self.links, self.links.fixed
-        behind = self._behind(record, F, N, loads)
-        sum_inwards(self._inward, behind)
         out = record.spatial[:, 0, links.joint]
         out[:, fixed] = links.at(fixed).from_joint(behind[:, fixed, :6])
         for load in loads:
             if fixed[load.link]:
                 out[:, load.link] += np.concatenate([load.f, load.n], axis=1)
-        return out[..., :3], out[..., 3:], behind[..., 7] + links.arm * behind[..., 6]
+        return out[..., :3], out[..., 3:]
 
-    def _behind(self, record: _Record, F: Array, N: Array, loads: Sequence[Load]) -> Array:
-        """What acts on each fixed link and on its way to it crosses no other fixed joint, see `_acting`; else zero."""
+    def _carrying(self, behind: Array, sizes: Sequence[LoadSizes]) -> dict[str, Array]:
+        """What rounds of f and n across fixed joints on the way to the body's origin and back, (N, links) each.
+
+        In axes that are not quite orthogonal, a vector does not come back as it was: as far as they are apart here, and
+        what our own product rounds.
+        """
+        links, way = self.links, OPERATIONS * EPS
+        there_and_back = 2 * way + (links.stretch + way)
+        force, moment = behind[..., 6], behind[..., 7] + links.arm * behind[..., 6]
+        out = {"f": there_and_back * force, "n": there_and_back * moment}
+        for load in sizes:
+            if links.fixed[load.link]:
+                for key, size in (("f", load.f), ("n", load.n)):
+                    out[key][:, load.link] += way * load.turned * size
+        return out
+
+    def _behind(self, record: _Record, F: Array, N: Array, loads: Sequence[Load], sizes: Sequence[LoadSizes]) -> Array:
+        """What crosses each fixed joint but the load at its own link, see `_acting`; zero for joints that move."""
         fixed, own = self.links.fixed, self.links.at(self.links.fixed)
         behind = np.zeros((*F.shape[:2], 8))
         F, N = F[:, fixed], N[:, fixed]
-        behind[:, fixed] = _acting(own.to_joint(F, N + np.cross(own.com, F)), F, own.arm + norm(own.com))
+        force = norm(F)
+        moment = norm(N) + norm(own.com) * force
+        behind[:, fixed] = _acting(own.to_joint(F, N + np.cross(own.com, F)), force, moment, own.arm)
         for k, i in enumerate(self._hanging):
             R, p = np.swapaxes(record.hanging[:, k, :3], -1, -2), record.hanging[:, k, 3]
             force, moment = np.split(record.spatial[:, 0, self.links.joint[i]], 2, axis=-1)
             f, n = product(R, force), product(R, moment)
             at_body = np.concatenate([f, n + np.cross(p, f)], axis=1)
-            behind[:, self._carrier[i]] += _acting(at_body, force, norm(p))
-        for load in loads:
+            behind[:, self._carrier[i]] += _acting(at_body, norm(force), norm(moment), norm(p))
+        for load, size in zip(loads, sizes, strict=True):
             if (carrier := self._inward[load.link]) >= 0:
-                link = self.links.at(load.link)
-                behind[:, carrier] += _acting(link.to_joint(load.f, load.n), load.f, link.arm)
+                link, times = self.links.at(load.link), 1 + size.turned
+                at_body = link.to_joint(load.f, load.n)
+                behind[:, carrier] += _acting(at_body, times * size.f, times * size.n, link.arm)
+        sum_inwards(self._inward, behind)
         return behind
 
     def _without_inertia(self) -> NDArray[np.bool_]:
@@ -258,10 +288,12 @@ def _check_memory(nv: int) -> None:
         )
 
 
-def _acting(wrench: Array, force: Array, arm: Array) -> Array:
-    """A wrench at the body's origin, the size of its force, and that of the moment as which it came, (N, ..., 8)."""
-    size = norm(force)[..., None]
-    return np.concatenate([wrench, size, np.broadcast_to(arm, size.shape[:-1])[..., None] * size], axis=-1)
+def _acting(wrench: Array, force: Array, moment: Array, arm: Array) -> Array:
+    """A wrench at the body's origin, and what rounds of it: sizes of the force and of the moment, (N, ..., 8).
+
+    Both are said where it came from, at the end of that arm.
+    """
+    return np.concatenate([wrench, np.stack([force, moment + arm * force], axis=-1)], axis=-1)
 
 
 class _Record(NamedTuple):

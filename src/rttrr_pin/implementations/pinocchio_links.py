@@ -42,6 +42,12 @@ class PinLinks(NamedTuple):
         return norm(self.p)
 
     @property
+    def stretch(self) -> Array:
+        """How far the R are from rotations, |R^T R - 1|: they were multiplied up from matrices that are rounded."""
+        stretch: Array = np.linalg.norm(np.swapaxes(self.R, -1, -2) @ self.R - np.eye(3), axis=(-2, -1))
+        return stretch
+
+    @property
     def massive(self) -> NDArray[np.bool_]:
         """Which have any inertia."""
         massive: NDArray[np.bool_] = (self.mass != 0.0) | self.inertia.any(axis=(-2, -1))
