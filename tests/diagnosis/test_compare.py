@@ -410,3 +410,12 @@ def test_one_state_and_many_have_the_same_verdict() -> None:
     results: list[Comparison] = [compare_robots(robot, other, n) for n in (1, 2, 300)]
     assert {own.mattering[0].difference.kind for own in results} == {"mass"}
     assert JointEffects() == robot.model.joints[0].effects
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_all_differences_together_make_the_second_of_the_first(seed: int) -> None:
+    """Also where the second is of another size, so that its rounding is more than that of the first."""
+    text = random_tree(seed, 6, SIMPLE)
+    heavy = re.sub(r'\b(value|i[xyz]{2})="([^"]*)"', lambda m: f'{m[1]}="{1e9 * float(m[2]):.17g}"', text)
+    result = compare_robots(rttrr_pin.load(text), rttrr_pin.load(heavy), 20)
+    assert result.mattering and not result.remainder

@@ -20,6 +20,7 @@ from rttrr_pin.diagnosis.effects_of import (
     effect_of,
     first_torques,
     rms,
+    rounding_of,
 )
 from rttrr_pin.diagnosis.effects_of import torques as torques_of
 from rttrr_pin.diagnosis.matched import Matched, listed, matched, notes_of
@@ -224,8 +225,12 @@ def _joints(both: Matched, torques: Torques) -> dict[str, JointTorque]:
     """Torques of the first, and how those of the second, at the same motion, differ."""
     signs = {body.joint.name: sign for body, sign in zip(both.a.bodies, both.other.signs, strict=True)}
     partner = dict(both.pairs)
-    motion = {partner[name]: tuple(signs[name] * x for x in own) for name, own in torques.motion.items()}
-    tau = torques_of(both.b, motion, [partner[name] for name in torques.joints])  # type: ignore[arg-type]
+    motion = {
+        partner[name]: (signs[name] * q, signs[name] * v, signs[name] * a) for name, (q, v, a) in torques.motion.items()
+    }
+    joints = [partner[name] for name in torques.joints]
+    tau = torques_of(both.b, motion, joints)
+    bound = np.maximum(torques.bound, rounding_of(both.b, motion, joints))
     own_signs = [
         signs[joint.name] for joint in both.a.model.joints if joint.name in torques.joints for _ in range(joint.nv)
     ]
@@ -235,6 +240,6 @@ def _joints(both: Matched, torques: Torques) -> dict[str, JointTorque]:
         raise InputError("the torques of the second robot overflow: its numbers are larger than those of a robot")
     left, change = tau - explained, tau - torques.tau
     most: Array = np.abs(left).max(axis=0, initial=0.0)
-    remainder = np.where(most <= REMAINDER * torques.bound, 0.0, rms(left))
+    remainder = np.where(most <= REMAINDER * bound, 0.0, rms(left))
     columns = zip(torques.rms, rms(change), np.abs(change).max(axis=0, initial=0.0), remainder, strict=True)
     return {label: JointTorque(*(float(x) for x in own)) for label, own in zip(torques.labels, columns, strict=True)}

@@ -116,12 +116,11 @@ def first_torques(a: RigidTree, b: RigidTree, n_states: int, seed: int) -> Torqu
     pairs = zip(a.bodies, b.bodies, strict=True)
     both = tuple(x.joint.name for x, y in pairs if x.joint.independent and y.joint.independent)
     labels = tuple(label for joint in model.moving if joint.name in both for label in joint.v_labels())
-    with np.errstate(all="ignore"):
-        bound = _of_joints(model, both, bounded_dynamics(model, q, v, a_, ())[1].tau)
+    bound = rounding_of(model, motion, both)
     tau = torques(model, motion, both)
     if not np.isfinite(tau).all():
         raise InputError("the torques of the first robot overflow: its numbers are larger than those of a robot")
-    return Torques(labels, both, motion, tau, np.max(bound, axis=0, initial=0.0))
+    return Torques(labels, both, motion, tau, bound)
 
 
 def _places(model: Model) -> tuple[dict[int, int], dict[int, int]]:
@@ -147,10 +146,23 @@ def _stacked(values: Sequence[Any]) -> Array:
     return np.stack([np.asarray(x, dtype=np.float64) for x in values], axis=-1)
 
 
-def torques(model: Model, motion: Motion, joints: Sequence[str]) -> Array:
-    """Torques of some joints of a robot, (N, degrees of freedom), by the reference recursion."""
+def rounding_of(model: Model, motion: Motion, joints: Sequence[str]) -> Array:
+    """At most how far rounding takes torques of some joints, (degrees of freedom,), by a running error bound."""
+    with np.errstate(all="ignore"):
+        bounds = bounded_dynamics(model, *_states(model, motion))[1].tau
+    most: Array = np.max(_of_joints(model, joints, bounds), axis=0, initial=0.0)
+    return most
+
+
+def _states(model: Model, motion: Motion) -> tuple[Array, Array, Array]:
     own = [motion[joint.name] for joint in model.moving]
     q, v, a = (np.hstack([parts[k] for parts in own]) for k in range(3))
+    return q, v, a
+
+
+def torques(model: Model, motion: Motion, joints: Sequence[str]) -> Array:
+    """Torques of some joints of a robot, (N, degrees of freedom), by the reference recursion."""
+    q, v, a = _states(model, motion)
     with np.errstate(all="ignore"):
         result = evaluate(model, FLOAT, _rows(q), _rows(v), _rows(a)).scalars(("tau",))
     table = np.empty((max(len(q), 2), len(result)))
