@@ -11,7 +11,7 @@ import numpy as np
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import STANDARD_GRAVITY, Model
 from rttrr_pin.diagnosis.altering import with_gravity
-from rttrr_pin.diagnosis.hypothesis import Hypothesis
+from rttrr_pin.diagnosis.hypothesis import Apply, Hypothesis
 from rttrr_pin.diagnosis.variant import Variant
 
 KNOWN = {"standard gravity": 9.80665, "9.81": 9.81, "9.8": 9.8, "10": 10.0, "the moon's": 1.62, "none": 0.0}
@@ -29,7 +29,7 @@ def gravities(model: Model) -> Iterator[Hypothesis]:
         yield _fixed("gravity missing", "gravity is not counted", "let the base accelerate upwards", np.zeros(3), own)
         yield _fixed(
             "gravity of another sign", "gravity has the opposite sign",
-            "let the base accelerate by minus gravity: upwards", -own, own,
+            "let the base accelerate by minus gravity: upwards", 0.0 - own, own, _opposite,
         )  # fmt: skip
     length = size or float(np.linalg.norm(STANDARD_GRAVITY))
     for k, sign in ((2, -1), (2, 1), (0, 1), (0, -1), (1, 1), (1, -1)):
@@ -68,19 +68,25 @@ def _told(size: float, own: float) -> dict[str, Any]:
     return {"gravity": size, "gravity of the robot": own} | ({"which is": named[0]} if named else {})
 
 
-def _fixed(id: str, sentence: str, repair: str, gravity: Array, own: Array) -> Hypothesis:
+def _fixed(id: str, sentence: str, repair: str, gravity: Array, own: Array, apply: Apply | None = None) -> Hypothesis:
+    """Gravity that is not fitted."""
     return Hypothesis(
         id=id,
         kind="convention",
         sentence=sentence,
         repair=repair,
-        apply=partial(_with_gravity, gravity=gravity),
+        apply=apply or partial(_with_gravity, gravity=gravity),
         values=lambda x: {"gravity": gravity.tolist(), "gravity of the robot": own.tolist()},
     )
 
 
 def _with_gravity(variant: Variant, x: Sequence[float], gravity: Array) -> Variant:
     return with_gravity(variant, gravity)
+
+
+def _opposite(variant: Variant, x: Sequence[float]) -> Variant:
+    """Minus the program's own, which may have another size."""
+    return with_gravity(variant, -variant.model.gravity)
 
 
 def _listed(x: Array) -> str:
