@@ -68,8 +68,10 @@ def differs(x: Array, y: Array, kinds: tuple[slice, ...] = (slice(None),)) -> bo
 
 def _differ(a: list[float], b: list[float]) -> bool:
     """The same of one kind; lists, since for few numbers they are faster than arrays."""
+    if a == b:
+        return False
     gap = max(abs(x - y) for x, y in zip(a, b, strict=True))
-    return gap > 0.0 and gap > SAME * max(map(abs, (*a, *b)))
+    return gap > SAME * max(map(abs, (*a, *b)))
 
 
 def line_of(model: Model, link: str | None = None, joint: str | None = None) -> str:
