@@ -81,13 +81,23 @@ def entry(name: str, thing: Any) -> list[str]:
 
 
 def members(thing: type) -> Iterator[tuple[str, Any]]:
-    """The public methods and properties that a class defines itself, in the order of the code."""
-    for name, member in vars(thing).items():
+    """The public methods and properties of a class and of its bases that are not public, in the order of the code."""
+    bases = [each for each in reversed(thing.__mro__) if each is thing or _undocumented(each)]
+    own: dict[str, Any] = {}
+    for each in bases:  # what a class defines anew stands where it does so
+        own = {name: member for name, member in own.items() if name not in vars(each)} | vars(each)
+    for name, member in own.items():
         public = not name.startswith("_") or (name == "__call__" and inspect.isfunction(member))
         function = getattr(thing, name) if isinstance(member, (classmethod, staticmethod)) else member
         documented = inspect.isroutine(function) or isinstance(member, property)
         if public and documented and inspect.getdoc(member):
             yield name, function
+
+
+def _undocumented(base: type) -> bool:
+    """Whether a base class is ours and has no entry of its own: its methods stand with those of the class."""
+    public = (value for name in PACKAGES for value in vars(import_module(name)).values())
+    return base.__module__.startswith("rttrr_pin") and all(base is not value for value in public)
 
 
 def signature(thing: Any) -> str:
