@@ -82,6 +82,14 @@ def test_the_second_reader_notices(old: str, new: str, noticed: str) -> None:
     assert noticed in " ".join(differences(SMALL["mimic"].replace(old, new).encode(), model))
 
 
+@pytest.mark.parametrize("name", ["0.5\n+0\r\n1", "1\t2", "j\n1"])
+@pytest.mark.parametrize("equals", ["=", " = \n"])
+def test_line_ends_are_spaces_in_names_that_look_like_numbers_too(name: str, equals: str) -> None:
+    text = SMALL["mimic"].replace('name="j1"', f'name{equals}"{name}"').replace('joint="j1"', f"joint{equals}'{name}'")
+    model = rttrr_pin.load(text, friction=True).model
+    assert text.count(name) > 1 and differences(text.encode(), model) == []
+
+
 def test_crashes_and_slow_cases_are_failures(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     def broken(*_: object, **__: object) -> None:
         raise KeyError("oops")

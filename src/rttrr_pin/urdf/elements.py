@@ -45,6 +45,12 @@ MOST_HINTS = 20
 QUOTED_NUMBERS = re.compile(rb"""(["'])([0-9eE+. -]*[\t\r\n][0-9eE+. \t\r\n-]*)\1""")
 """Numbers in quotation marks with a tab or line end among them."""
 
+NAMED = re.compile(rb"\b(?:name|link|joint)\s*=\s*$")
+"""What stands before a name, which may look like numbers."""
+
+MOST_BEFORE = 64
+"""Characters of that, blanks included."""
+
 
 class Element:
     """An XML element with what is needed to say where it is.
@@ -250,9 +256,12 @@ def _with_blanks(text: bytes) -> bytes:
     """The text with tabs and line ends between numbers written so that they are kept.
 
     XML makes spaces of them, but parsers of URDF do not. The line ends are put behind the closing quotation mark again.
+    In names they are spaces, whatever the name is.
     """
 
     def kept(match: re.Match[bytes]) -> bytes:
+        if NAMED.search(text, max(0, match.start() - MOST_BEFORE), match.start()):
+            return match[0]
         value = match[2].replace(b"\r\n", b"\n").replace(b"\r", b"\n")
         lines = match[2].count(b"\n")
         return match[1] + value.replace(b"\t", b"&#9;").replace(b"\n", b"&#10;") + match[1] + b"\n" * lines
