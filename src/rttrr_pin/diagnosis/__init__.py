@@ -11,6 +11,13 @@ if TYPE_CHECKING:
     from rttrr_pin.diagnosis.compare import compare_robots as compare_robots
     from rttrr_pin.diagnosis.difference import Difference as Difference
     from rttrr_pin.diagnosis.effects_of import Effect as Effect
+    from rttrr_pin.diagnosis.log import Log as Log
+    from rttrr_pin.diagnosis.log import is_log as is_log
+    from rttrr_pin.diagnosis.log import read_log as read_log
+    from rttrr_pin.diagnosis.log_diagnosis import JointResidual as JointResidual
+    from rttrr_pin.diagnosis.log_diagnosis import LogCause as LogCause
+    from rttrr_pin.diagnosis.log_diagnosis import LogDiagnosis as LogDiagnosis
+    from rttrr_pin.diagnosis.log_diagnosis import diagnose_log as diagnose_log
     from rttrr_pin.diagnosis.states import Sample as Sample
     from rttrr_pin.diagnosis.states import sample_states as sample_states
 
@@ -20,6 +27,8 @@ __getattr__, __dir__, __all__ = lazy(
         "compare": ("Comparison", "compare_robots"),
         "difference": ("Difference",),
         "effects_of": ("Effect",),
+        "log": ("Log", "is_log", "read_log"),
+        "log_diagnosis": ("JointResidual", "LogCause", "LogDiagnosis", "diagnose_log"),
         "states": ("Sample", "sample_states"),
     },
 )

@@ -217,6 +217,15 @@ def _payloads(
     return payloads, printed
 
 
+def numbers_of_columns(columns: Columns, names: Sequence[str], lines: Sequence[int], name: str) -> Array:
+    """The numbers of some columns of a table of that name, (rows, columns).
+
+    Raises:
+        InputError: one is no number.
+    """
+    return _numbers(columns, names, lines, name)[0]
+
+
 def _numbers(columns: Columns, names: Sequence[str], lines: Sequence[int], name: str) -> tuple[Array, Digits]:
     """One array of a state or result, and the digits that it was printed with."""
     digits, parts = Digits(), [np.zeros((len(lines), 0))]

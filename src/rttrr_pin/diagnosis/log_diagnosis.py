@@ -1,0 +1,283 @@
+"""A log beside the model: the residual of each joint, what explains most of it, and what is left."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from rttrr_pin.core.arrays import Array
+from rttrr_pin.diagnosis.log import Log, read_log
+from rttrr_pin.diagnosis.log_causes import Candidate, candidates
+from rttrr_pin.diagnosis.residual import Residuals, contribution, residuals_of
+from rttrr_pin.diagnosis.selection import SAME, Reduced, chosen, fitted, reduced
+from rttrr_pin.errors import InputError
+from rttrr_pin.reporting.results import Summarised, finite
+from rttrr_pin.robot import Robot, model_of
+
+SEEN = 0.1
+"""Of the noise of a joint: what a cause must make there, root mean square, to be named."""
+
+LEFT = 1.15
+"""Times the noise: what is left at most where nothing is left to explain."""
+
+UNTOLD = 1e-4
+"""A number of which so much lies in what motion does not tell has no value."""
+
+Verdict = Literal["agrees", "explained", "unexplained"]
+
+
+@dataclass(frozen=True, slots=True)
+class JointResidual:
+    """What is between measured and modelled driving force of one degree of freedom [N m or N].
+
+    Attributes:
+        rms: root mean square.
+        largest: of the absolute values.
+        share: rms over that of the measured tau; 0 where that is zero.
+        noise: standard deviation by the noise of tau and the errors of v and a; NaN where it is not known.
+    """
+
+    rms: float
+    largest: float
+    share: float
+    noise: float
+
+    @property
+    def at_noise(self) -> bool:
+        """Whether nothing but noise is left; so where that is not known apart from what is left."""
+        return not self.rms > LEFT * self.noise
+
+
+@dataclass(frozen=True, slots=True)
+class LogCause:
+    """One of the causes that together explain most of the residual.
+
+    Attributes:
+        hypothesis: what it is called, the same for each link or joint.
+        link: the link it is about, if any.
+        joint: the joint it is about, if any.
+        sentence: what was found, with its number and unit.
+        values: the same numbers by name.
+        explains: the part of the residual's variance, over the noise of each joint, that is left by the causes before
+            and not by this one, of that before all.
+        alternatives: sentences of other causes that explain the same.
+    """
+
+    hypothesis: str
+    link: str | None
+    joint: str | None
+    sentence: str
+    values: dict[str, Any]
+    explains: float
+    alternatives: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class LogDiagnosis(Summarised):
+    """What a log says of a model.
+
+    Attributes:
+        robot: its name.
+        log: the file's name.
+        rows: how many were used.
+        seconds: how long they last.
+        verdict: "agrees": nothing but noise is between the two; "explained": so with the causes; else "unexplained".
+        causes: what explains most, the largest part first.
+        before: by joint, the residual as it is.
+        after: by joint, what the causes leave.
+        notes: how the log was read.
+    """
+
+    robot: str
+    log: str
+    rows: int
+    seconds: float
+    verdict: Verdict
+    causes: tuple[LogCause, ...]
+    before: dict[str, JointResidual]
+    after: dict[str, JointResidual]
+    notes: tuple[str, ...] = ()
+
+    @property
+    def passed(self) -> bool:
+        """Whether the model says what was measured, but for noise."""
+        return self.verdict == "agrees"
+
+    def summary(self) -> str:
+        """The verdict, then the causes, one a line."""
+        compared = f"{self.log} beside {self.robot}, {self.rows:,} rows of {self.seconds:.3g} s"
+        if self.passed:
+            return f"AGREES {compared}: nothing but noise is between measured and modelled tau"
+        left = [name for name, own in self.after.items() if not own.at_noise]
+        rest = f"more than noise is left at {', '.join(left)}" if left else "nothing but noise is left"
+        count = f"{len(self.causes)} cause{'s' * (len(self.causes) != 1)}"
+        head = f"{self.verdict.upper()} {compared}: {count}, {rest}"
+        return "\n".join([head, *(cause.sentence for cause in self.causes)])
+
+    def to_dict(self) -> dict[str, Any]:
+        """Everything as data for JSON."""
+        data = {
+            "schema": 1,
+            "verdict": self.verdict,
+            "passed": self.passed,
+            "robot": self.robot,
+            "log": self.log,
+            "rows": self.rows,
+            "seconds": self.seconds,
+            "causes": [asdict(cause) for cause in self.causes],
+            "residual_before": {name: asdict(own) for name, own in self.before.items()},
+            "residual_after": {name: asdict(own) for name, own in self.after.items()},
+            "notes": self.notes,
+        }
+        return finite(data)
+
+
+def diagnose_log(robot: Robot, path: str | Path) -> LogDiagnosis:
+    """What a log says of a robot: read it, and explain its residual.
+
+    Args:
+        robot: the robot, as it is modelled; joint effects that it has take part.
+        path: a table with `time` or `t`, `q_<joint>`, `tau_<joint>`, with or without `v_` and `a_` (docs/notation.md).
+
+    Raises:
+        InputError: the log cannot be used, or the robot has no joint that moves.
+        UnknownNameError: a column is of a joint that the robot has not.
+    """
+    model = model_of(robot)
+    if not model.nv:
+        raise InputError(f"no joint of robot {model.name!r} moves: a log says nothing of it")
+    return explain(robot, read_log(path, model))
+
+
+def explain(robot: Robot, log: Log) -> LogDiagnosis:
+    """What explains most of the residual of a log: forward selection among all that is linear in it.
+
+    Of each joint viscous and Coulomb friction, armature, an offset and a factor of tau; of each link that moves its
+    mass with its centre, or all ten inertial parameters; gravity; a factor of all tau. A cause is named if it gains
+    more than chance would (`selection`), and makes a tenth of the noise at some joint.
+    """
+    residuals = residuals_of(robot, log)
+    every = candidates(residuals)
+    A = residuals.columns * residuals.weights[:, None]
+    known = bool(np.isfinite(residuals.noise).all())
+    problem = reduced(A, residuals.means * residuals.weights, residuals.model.nv, known)
+    causes = _seen(problem, residuals, every)
+    x = _numbers(problem, causes)
+    explained = _explained(residuals, robot, log, causes, x)
+    noise = residuals.noise
+    if not known:  # of those joints: what all columns together leave
+        noise = np.where(np.isfinite(noise), noise, np.sqrt(_least(residuals) + residuals.within))
+    before = _of_joints(residuals, residuals.whole, noise)
+    after = _of_joints(residuals, residuals.whole - explained, noise)
+    left = all(own.at_noise for own in after.values())
+    verdict: Verdict = "unexplained" if not left else "explained" if causes else "agrees"
+    told = tuple(_cause(problem, causes, k, every, x) for k in range(len(causes)))
+    seconds = float(log.time[-1] - log.time[0])
+    return LogDiagnosis(robot.name, log.name, len(log), seconds, verdict, told, before, after, log.notes)
+
+
+def _seen(problem: Reduced, residuals: Residuals, every: Sequence[Candidate]) -> list[Candidate]:
+    """The causes that gain more than chance, and make enough of a difference."""
+    allowed = list(every)
+    while True:
+        causes = [allowed[k] for k in chosen(problem, [own.directions for own in allowed])]
+        x = _numbers(problem, causes)
+        small = [
+            own
+            for own, numbers in zip(causes, x, strict=True)
+            if not (_size(residuals, own, numbers[0]) > SEEN * np.nan_to_num(residuals.noise)).any()
+        ]
+        if not small:
+            return causes
+        allowed = [own for own in allowed if own not in small]
+
+
+def _size(residuals: Residuals, cause: Candidate, x: Array) -> Array:
+    """What a cause makes of tau, root mean square, (nv,)."""
+    made = residuals.columns @ (cause.directions @ np.nan_to_num(x))
+    return np.asarray(np.sqrt((made**2).mean(axis=0)))
+
+
+def _numbers(problem: Reduced, causes: Sequence[Candidate]) -> list[tuple[Array, Array, Array]]:
+    """Of each cause its fitted numbers, their standard errors, and which of them motion tells."""
+    if not causes:
+        return []
+    D = np.hstack([own.directions for own in causes])
+    A = problem.A @ (problem.lengths[:, None] * D)
+    sizes = np.linalg.norm(A, axis=0)
+    sizes[sizes == 0.0] = 1.0
+    _, x = fitted(problem, [own.directions for own in causes])[1:]
+    _, sigma, V = np.linalg.svd(A / sizes)
+    kept = sigma > 1e-7 * sigma.max(initial=0.0)
+    full = np.zeros(len(V), dtype=bool)
+    full[: len(kept)] = kept
+    error = np.sqrt(((V[full] / sigma[kept][:, None]) ** 2).sum(axis=0) * problem.scale) / sizes
+    told = np.linalg.norm(V[~full], axis=0) < UNTOLD
+    ends = np.cumsum([own.directions.shape[1] for own in causes])[:-1]
+    parts = (np.split(own, ends) for own in (x, error, told))
+    return list(zip(*parts, strict=True))
+
+
+def _explained(
+    residuals: Residuals, robot: Robot, log: Log, causes: Sequence[Candidate], x: Sequence[tuple[Array, Array, Array]]
+) -> Array:
+    """What the causes make of tau at each row of the log, (N, nv)."""
+    total = np.zeros(residuals.columns.shape[-1])
+    for own, (numbers, _, _) in zip(causes, x, strict=True):
+        total += own.directions @ numbers
+    return contribution(robot, log, total)
+
+
+def _least(residuals: Residuals) -> Array:
+    """The variance at each joint that no sum of the columns explains, (nv,)."""
+    left = []
+    for j in range(residuals.model.nv):
+        A, y = residuals.columns[:, j], residuals.means[:, j]
+        sizes = np.linalg.norm(A, axis=0)
+        x, _, rank, _ = np.linalg.lstsq(A / np.where(sizes > 0, sizes, 1.0), y, rcond=1e-7)
+        rest = y - A / np.where(sizes > 0, sizes, 1.0) @ x
+        left.append(float(rest @ rest) / max(len(y) - int(rank), 1))
+    return np.array(left)
+
+
+def _of_joints(residuals: Residuals, rest: Array, noise: Array) -> dict[str, JointResidual]:
+    found = {}
+    for j, name in enumerate(residuals.model.v_names):
+        rms, size = float(np.sqrt((rest[:, j] ** 2).mean())), float(residuals.size[j])
+        largest = float(np.abs(rest[:, j]).max(initial=0.0))
+        found[name] = JointResidual(rms, largest, rms / size if size else 0.0, float(noise[j]))
+    return found
+
+
+def _cause(
+    problem: Reduced,
+    causes: Sequence[Candidate],
+    k: int,
+    every: Sequence[Candidate],
+    x: Sequence[tuple[Array, Array, Array]],
+) -> LogCause:
+    """A cause in words, with those that explain the same."""
+    own, others = causes[k], [one for one in causes if one is not causes[k]]
+    whole = fitted(problem, [])[0]
+    before = fitted(problem, [one.directions for one in causes[:k]])[0]
+    after = fitted(problem, [one.directions for one in causes[: k + 1]])[0]
+    with_all = fitted(problem, [one.directions for one in causes])[0]
+    sentence, values = _told(own, x[k])
+    alternatives = []
+    for one in every:
+        if one in causes or one.directions.shape[1] > own.directions.shape[1]:
+            continue
+        tried = [*others, one]
+        if fitted(problem, [other.directions for other in tried])[0] < with_all + SAME:
+            alternatives.append(_told(one, _numbers(problem, tried)[-1])[0])
+    explains = (before - after) / whole if whole else 0.0
+    return LogCause(own.hypothesis, own.link, own.joint, sentence, dict(values), explains, tuple(alternatives))
+
+
+def _told(own: Candidate, numbers: tuple[Array, Array, Array]) -> tuple[str, Any]:
+    x, error, told = numbers
+    return own.told(np.where(told, x, np.nan), np.where(told, error, np.nan))
