@@ -26,8 +26,11 @@ COUNTED = 1.4
 """How often a parameter counts in cross-validation (Kim and Gu, 2004)."""
 
 
+DENSER = 1
+"""Steps of `_spacings` by which knots are denser than cross-validation has them, so that the error is that of noise."""
+
 BOTH = math.sqrt(2.0)
-"""Times the noise: where cross-validation chooses, what a spline cannot follow is about as large as what noise does."""
+"""Times the noise: some of the error is what a spline cannot follow."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -52,7 +55,8 @@ def smoothed(t: Array, x: Array) -> Smoothed:
     """Signals (N, columns) sampled at increasing times (N,) without a gap; at least `FEWEST` samples."""
     spacings = _spacings(t)
     scores, residuals = zip(*(_score(t, x, spacing) for spacing in spacings), strict=True)
-    best = np.argmin(scores, axis=0)
+    best = np.maximum(np.argmin(scores, axis=0) - DENSER, 0)
+    best = np.where([np.isfinite(scores[k][column]) for column, k in enumerate(best)], best, np.argmin(scores, axis=0))
     rng = np.random.default_rng(0)
     orders, others = (tuple(np.zeros_like(x) for _ in range(3)) for _ in range(2))
     noise = np.array([residuals[k][column] for column, k in enumerate(best)])
