@@ -9,6 +9,7 @@ import numpy as np
 import rttrr_pin
 from rttrr_pin.core.model import Model
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
+from rttrr_pin.diagnosis.joints import joints
 from rttrr_pin.diagnosis.levers import levers
 from rttrr_pin.diagnosis.mechanics import mechanics
 from rttrr_pin.diagnosis.neighbours import neighbours
@@ -45,3 +46,8 @@ def test_a_tensor_that_is_not_turned_is_what_fusing_without_turning_gives() -> N
         return next(one for one in neighbours(model) if one.id == "tensor of a fixed link not turned")
 
     assert_same("arm_with_gripper", own, planted.merged_without_turning(text("arm_with_gripper"), "gripper_mount"))
+
+
+def test_a_file_without_friction_is_none_whose_friction_counts() -> None:
+    robot = rttrr_pin.load(text("modified_dh")).with_joint_effects({"joint_1": rttrr_pin.JointEffects(0.1, 0.2, 0.3)})
+    assert not [one.id for one in joints(robot.model) if one.id.startswith("friction of the file")]

@@ -116,7 +116,10 @@ def _with_more(variant: Variant, x: Sequence[float], effect: str, indices: tuple
 
 def _friction_of_the_file(model: Model) -> Iterator[Hypothesis]:
     """Damping and friction that the file has and the robot, as it is asked, has not."""
-    left_out = tuple(i for i, joint in enumerate(model.joints) if joint.nv and _with_friction(joint) is not joint)
+    given = (
+        i for i, joint in enumerate(model.joints) if joint.nv and (joint.dynamics.damping or joint.dynamics.friction)
+    )
+    left_out = tuple(i for i in given if _with_friction(model.joints[i]) is not model.joints[i])
     for group in (*((i,) for i in left_out), *([left_out] if len(left_out) > 1 else [])):
         joint, name = named(model, group)
         yield Hypothesis(
