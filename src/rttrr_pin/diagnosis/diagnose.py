@@ -1,0 +1,267 @@
+"""Why does a program differ? The causes, or what the difference depends on."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.model import Model
+from rttrr_pin.core.wrench import QUANTITIES
+from rttrr_pin.diagnosis.conventions import conventions
+from rttrr_pin.diagnosis.counterexample import counterexample
+from rttrr_pin.diagnosis.dependence import dependence
+from rttrr_pin.diagnosis.evidence import Evidence, flat, part_of, places, spread
+from rttrr_pin.diagnosis.hypothesis import Hypothesis
+from rttrr_pin.diagnosis.joints import joints
+from rttrr_pin.diagnosis.mechanics import mechanics
+from rttrr_pin.diagnosis.parameters import parameters
+from rttrr_pin.diagnosis.placements import placements
+from rttrr_pin.diagnosis.predictions import applied, predicted
+from rttrr_pin.diagnosis.results import Cause, Diagnosis, NearMiss, Residual, Verdict
+from rttrr_pin.diagnosis.search import Explanation, Progress, Search
+from rttrr_pin.diagnosis.states import sample_states
+from rttrr_pin.diagnosis.variant import Variant
+from rttrr_pin.errors import InputError
+from rttrr_pin.implementations import Batch, Evaluation, Implementation, default_allowance, label, make_implementation
+from rttrr_pin.implementations.protocol import evaluated
+from rttrr_pin.implementations.registry import Source
+from rttrr_pin.robot import Robot
+from rttrr_pin.validation.compare import with_allowance
+from rttrr_pin.validation.sampling import Payload
+from rttrr_pin.validation.states import model_of
+
+NEAR_MISSES, LEAST = 5, 0.1
+"""So many are told, of those that explain this part at least."""
+
+OTHERS = 10
+"""Other sets that are told."""
+
+CATALOGUES = (conventions, parameters, placements, joints, mechanics)
+
+
+def diagnose(
+    robot: Robot,
+    subject: Source,
+    reference: Source = "kernel",
+    n_states: int = 300,
+    seed: int = 0,
+    payload: Payload = None,
+    progress: Progress | None = None,
+) -> Diagnosis:
+    """Find out why a program's inverse dynamics differ from another's.
+
+    Args:
+        robot: the robot.
+        subject: the program that is asked: all that `validate` takes. A table brings its own states.
+        reference: what it is compared with. Where that differs from the recursion too, its causes are told as well.
+        n_states: how many telling states (`sample_states`); of a table all of its own.
+        seed: of the states.
+        payload: what the robot exerts on its surroundings: None, a wrench, or `RandomPayload()`.
+        progress: called with the number of hypotheses tried so far.
+
+    Returns:
+        The verdict, the causes, and what is left with them.
+
+    Raises:
+        InputError: an argument cannot be used, or the programs have no quantity in common.
+        ImplementationError: a program is missing, refuses the robot, dies, or says something else than numbers.
+    """
+    begin = time.perf_counter()
+    model = model_of(robot, "there is nothing to diagnose")
+    programs = [make_implementation(source, model) for source in (subject, reference)]
+    batch, sampling = _states(robot, programs, n_states, seed, payload)
+    with np.errstate(over="ignore", invalid="ignore"):
+        return _diagnosed(robot, programs, batch, sampling, progress, begin)
+
+
+def hypotheses_of(model: Model) -> list[Hypothesis]:
+    """The whole catalogue about a robot."""
+    return [own for catalogue in CATALOGUES for own in catalogue(model)]
+
+
+def _states(
+    robot: Robot, programs: Sequence[Implementation], n_states: int, seed: int, payload: Payload
+) -> tuple[Batch, str]:
+    """Those of a table among the programs; else telling ones."""
+    tables = [one.states() for one in programs if hasattr(one, "states")]
+    if not tables:
+        return sample_states(robot, n_states, seed, payload).batch, "telling"
+    if len(tables) > 1 and not all(np.array_equal(getattr(tables[0], x), getattr(tables[1], x)) for x in "qva"):
+        raise InputError(f"{programs[0].name} and {programs[1].name} are of different states: diagnose them one by one")
+    return tables[0], "table"
+
+
+def _diagnosed(
+    robot: Robot,
+    programs: Sequence[Implementation],
+    batch: Batch,
+    sampling: str,
+    progress: Progress | None,
+    begin: float,
+) -> Diagnosis:
+    """The diagnosis of two programs at these states."""
+    model = batch.model
+    shared = tuple(key for key in QUANTITIES if all(key in one.quantities for one in programs))
+    if not shared:
+        raise InputError(f"{programs[0].name} and {programs[1].name} give no quantity in common")
+    results = [with_allowance(batch, evaluated(one, batch)) for one in programs]
+    kept, notes = _finite_states(programs, results, shared)
+    batch, results = part_of(batch, kept), [_part(one, kept) for one in results]
+    rounding = spread(default_allowance(batch), QUANTITIES)
+    expected = flat(dict(batch.recursion[0].items()), QUANTITIES)
+    evidence = [_evidence(batch, one, shared, expected, rounding) for one in results]
+    of_both = Evidence(
+        batch, shared, evidence[0].values, evidence[1].values, evidence[0].tolerance + evidence[1].tolerance,
+        np.zeros_like(evidence[0].rounding),
+    )
+    before = of_both.of_tolerance(of_both.expected)
+    verdict: Verdict = "agrees"
+    causes: list[Cause] = []
+    others: list[tuple[Cause, ...]] = []
+    near: list[NearMiss] = []
+    after, tried, left = of_both.difference, 0, before
+    lines: tuple[str, ...] = ()
+    example = ""
+    if (before > 1.0).any():
+        verdict = "explained"
+        base, hypotheses = Variant(model), hypotheses_of(model)
+        explained = [one.expected for one in evidence]
+        for k, (program, own) in enumerate(zip(programs, evidence, strict=True)):
+            if (own.of_tolerance(own.expected) <= 1.0).all():
+                continue
+            search = Search(own, base, hypotheses, progress)
+            first, *rest = search.run() or [Explanation((), (), np.inf, 1.0)]
+            tried += search.tried
+            if not first.explains:
+                verdict = "unexplained"
+                near += _near_misses(search, program)
+                continue
+            causes += _causes(first, program)
+            others += [tuple(_causes(one, program)) for one in rest[:OTHERS]]
+            explained[k] = predicted(applied(base, first.hypotheses, first.numbers), own)
+        if verdict == "explained" and not causes:
+            verdict = "unexplained"
+        if verdict == "explained":
+            after = (evidence[0].values - explained[0]) - (evidence[1].values - explained[1])
+            both = sum(one.tolerance + one.rounding for one in evidence)
+            left = np.abs(after) / both
+        else:
+            causes, others = [], []
+            lines = dependence(programs, of_both)
+        example = counterexample(robot, programs, of_both)
+    return Diagnosis(
+        robot=robot.name,
+        subject=label(programs[0]),
+        reference=label(programs[1]),
+        verdict=verdict,
+        causes=tuple(causes),
+        others=tuple(others),
+        residuals=_residuals(of_both, after, before, left),
+        residual_before=float(before.max(initial=0.0)),
+        residual_after=float(left.max(initial=0.0)),
+        dependence=lines,
+        near_misses=tuple(near[:NEAR_MISSES]),
+        counterexample=example,
+        n_states=len(batch),
+        sampling=sampling,
+        tried=tried,
+        notes=(*(note.text for note in model.notes), *(x for one in programs for x in getattr(one, "notes", ())), *notes),
+        seconds=time.perf_counter() - begin,
+    )
+
+
+def _evidence(
+    batch: Batch, result: Evaluation, quantities: tuple[str, ...], expected: Array, rounding: Array
+) -> Evidence:
+    every = places(batch.model, QUANTITIES)
+    own = np.array([key in quantities for key, _ in every], dtype=bool)
+    return Evidence(
+        batch,
+        quantities,
+        flat(dict(result.values), quantities),
+        expected[:, own],
+        spread(dict(result.allowance or {}), quantities),
+        rounding[:, own],
+    )
+
+
+def _finite_states(
+    programs: Sequence[Implementation], results: Sequence[Evaluation], quantities: Sequence[str]
+) -> tuple[Array, list[str]]:
+    """The states in which all results are numbers; and what is to be said of the others."""
+    finite = [np.isfinite(flat(dict(one.values), quantities)).all(axis=1) for one in results]
+    notes = []
+    for program, own in zip(programs, finite, strict=True):
+        if not own.all():
+            first = int(np.argmin(own))
+            notes.append(f"{program.name} has no number in {int((~own).sum())} states, first {first}: these are left out")
+    kept = np.flatnonzero(np.logical_and.reduce(finite))
+    if not len(kept):
+        raise InputError(f"no state has numbers of both programs: {'; '.join(notes)}")
+    return kept, notes
+
+
+def _part(result: Evaluation, rows: Array) -> Evaluation:
+    values, allowance = (
+        {key: x[rows] for key, x in (arrays or {}).items()} for arrays in (result.values, result.allowance)
+    )
+    joint = None if result.tau_joint is None else result.tau_joint[rows]
+    return Evaluation(values, allowance, joint)
+
+
+def _causes(found: Explanation, program: Implementation) -> list[Cause]:
+    """The hypotheses of a set as causes."""
+    causes = []
+    for k, own in enumerate(found.hypotheses):
+        alike = found.alike[k] if found.alike else ()
+        cause = _cause(own, found.numbers_of(k), program)
+        causes.append(replace(cause, alternatives=tuple(_cause(one, (), program) for one in alike)))
+    return causes
+
+
+def _cause(own: Hypothesis, numbers: Sequence[float], program: Implementation) -> Cause:
+    values = own.values(numbers) if len(numbers) == len(own.start) else {}
+    return Cause(
+        own.id, own.sentence, own.repair, program.name, own.link, own.joint, dict(values), own.equation, own.line
+    )
+
+
+def _near_misses(search: Search, program: Implementation) -> list[NearMiss]:
+    found = []
+    for left, own in search.ranked:
+        explains = 1.0 - left**2
+        if explains >= LEAST:
+            found.append(NearMiss(f"{program.name}: {own[0].hypothesis.sentence}", explains))
+    return found
+
+
+def _residuals(evidence: Evidence, after: Array, before_ratio: Array, after_ratio: Array) -> tuple[Residual, ...]:
+    """Row by row."""
+    model = evidence.batch.model
+    labels = places(model, evidence.quantities)
+    units = {name: "N m" if turns else "N" for name, turns in _turning(model)}
+    rows: list[Residual] = []
+    for place in dict.fromkeys(labels):
+        own = [k for k, label_ in enumerate(labels) if label_ == place]
+        key, at = place
+        rows.append(
+            Residual(
+                key,
+                at,
+                units[at] if key == "tau" else "N" if key in ("F", "f") else "N m",
+                float(np.sqrt(np.mean(evidence.expected[:, own] ** 2) * len(own))),
+                float(np.abs(evidence.difference[:, own]).max()),
+                float(np.abs(after[:, own]).max()),
+                float(before_ratio[:, own].max()),
+                float(after_ratio[:, own].max()),
+            )
+        )
+    return tuple(rows)
+
+
+def _turning(model: Model) -> list[tuple[str, bool]]:
+    return [pair for joint in model.moving for pair in zip(joint.v_labels(), joint.type.rotations, strict=True)]

@@ -1,0 +1,221 @@
+"""What each hypothesis would change, at the states on which hypotheses are tried."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.inertia import SpatialInertia
+from rttrr_pin.core.model import Link, Model
+from rttrr_pin.core.algebra import Matrix, Vector
+from rttrr_pin.diagnosis.evidence import Evidence, flat, joined, shape_of_loads
+from rttrr_pin.diagnosis.hypothesis import Hypothesis
+from rttrr_pin.diagnosis.variant import Variant, run
+from rttrr_pin.implementations.protocol import Batch
+
+TENSORS = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))
+"""The entries of a tensor in the order of the parameters."""
+
+ALIKE = 1e-9
+"""Relative: changes no farther apart are of hypotheses that these states cannot tell apart."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Change:
+    """What a hypothesis would change.
+
+    Attributes:
+        hypothesis: whose.
+        change: without fitted numbers, (numbers,) the change itself; else (fitted, numbers), by each number.
+        alike: other hypotheses that would change the same.
+    """
+
+    hypothesis: Hypothesis
+    change: Array
+    alike: tuple[Hypothesis, ...] = ()
+
+    @property
+    def fitted(self) -> int:
+        """How many numbers are fitted."""
+        return len(self.hypothesis.start)
+
+
+def changes(
+    outer: Variant, hypotheses: Sequence[Hypothesis], evidence: Evidence, scale: Array, progress: object = None
+) -> list[Change]:
+    """The visible changes of hypotheses on top of a program, over all numbers, each divided by its scale.
+
+    Those that change nothing that can be seen are left out; of those that change the same the first one stands for all.
+    """
+    base = predicted(outer, evidence)
+    columns: Array | None = None
+    visible = (evidence.tolerance + evidence.rounding).ravel()
+    found: list[Change] = []
+    for own in hypotheses:
+        if own.parameters is not None:
+            if columns is None:
+                columns = parameter_columns(outer, evidence)
+            change = own.parameters @ columns
+        elif own.start:
+            change = jacobian(outer, [own], own.neutral, own.start, evidence, base)
+        else:
+            with np.errstate(invalid="ignore"):
+                change = (predicted(own.apply(outer, ()), evidence) - base).ravel()
+        if not np.isfinite(change).all() or not (np.abs(change) > visible).any():
+            continue
+        found.append(Change(own, change / scale.ravel()))
+    return _distinct(found)
+
+
+def predicted(variant: Variant, evidence: Evidence) -> Array:
+    """What a program computes at the states, (N, numbers)."""
+    return flat(variant.evaluate(evidence.batch), evidence.quantities)
+
+
+def jacobian(
+    outer: Variant,
+    hypotheses: Sequence[Hypothesis],
+    at: Sequence[float],
+    towards: Sequence[float],
+    evidence: Evidence,
+    base: Array,
+) -> Array:
+    """By secants, how the results change with each fitted number, (fitted, numbers); `base` is what they are there."""
+    rows = []
+    for k, (x, y) in enumerate(zip(at, towards, strict=True)):
+        step = y - x or 1e-6 * max(1.0, abs(x))
+        moved = [*at]
+        moved[k] = x + step
+        rows.append((predicted(applied(outer, hypotheses, moved), evidence) - base).ravel() / step)
+    return np.array(rows).reshape(len(at), -1)
+
+
+def applied(outer: Variant, hypotheses: Sequence[Hypothesis], numbers: Sequence[float]) -> Variant:
+    """The program under several hypotheses, with the fitted numbers of all of them."""
+    first = 0
+    for own in hypotheses:
+        count = len(own.start)
+        outer = own.apply(outer, tuple(numbers[first : first + count]))
+        first += count
+    return outer
+
+
+def parameter_columns(outer: Variant, evidence: Evidence) -> Array:
+    """The change by each inertial parameter, (10 links, numbers), in the order of `Robot.inertial_parameters`.
+
+    Of a robot that has this one body alone: no difference of large numbers.
+    """
+    model, given = outer.model, outer.given(evidence.batch)
+    base = run(model, given, outer.mutations)
+    shown = flat(_through(outer, evidence.batch, base), evidence.quantities)
+    bare = replace(given, loads=())
+    rows = []
+    for i in range(len(model.links)):
+        for values in _of_body(model, i, bare, outer):
+            if outer.outputs:
+                moved = {key: base[key] + x for key, x in values.items()}
+                column = flat(_through(outer, evidence.batch, moved), evidence.quantities) - shown
+            else:
+                column = flat(values, evidence.quantities)
+            rows.append(column.ravel())
+    return np.array(rows)
+
+
+def _through(outer: Variant, batch: Batch, values: dict[str, Array]) -> dict[str, Array]:
+    for own in outer.outputs:
+        values = own(batch, values)
+    return values
+
+
+def _of_body(model: Model, i: int, batch: Batch, outer: Variant) -> Iterator[dict[str, Array]]:
+    """What a unit of each parameter of link i, of mass, first moment and tensor about the origin, gives."""
+
+    def of(m: float, c: Array, J: Array) -> dict[str, Array]:
+        links = [Link(own.name) for own in model.links]
+        links[i] = Link(links[i].name, m, c, J)
+        alone = replace(model.without_joint_effects(), links=tuple(links))
+        return run(alone, batch, outer.mutations)
+
+    nothing, none = np.zeros(3), np.zeros((3, 3))
+    of_mass = of(1.0, nothing, none)
+    yield of_mass
+    for k in range(3):
+        c = np.eye(3)[k]
+        centred = of(1.0, c, -(np.eye(3) - np.outer(c, c)))  # about the origin it has no tensor
+        yield {key: x - of_mass[key] for key, x in centred.items()}
+    for r, s in TENSORS:
+        J = np.zeros((3, 3))
+        J[r, s] = J[s, r] = 1.0
+        yield of(0.0, nothing, J)
+
+
+def with_parameters(link: Link, change: Array) -> Link:
+    """A link whose ten parameters are changed by so much; the tensor about the origin."""
+    own = SpatialInertia.of(link.mass, Vector.of(link.com), Matrix.of(link.inertia))
+    J = np.zeros((3, 3))
+    for (r, s), x in zip(TENSORS, change[4:], strict=True):
+        J[r, s] = J[s, r] = x
+    other = SpatialInertia(float(change[0]), Vector.of(change[1:4]), Matrix.of(J))
+    com, tensor = (own + other).about_com()
+    symmetric = np.array(tensor.array)
+    return Link(link.name, float((own + other).m), np.array([*com]), (symmetric + symmetric.T) / 2)
+
+
+def _distinct(found: list[Change]) -> list[Change]:
+    """One for all that change the same; with a fitted number, that change it in the same direction."""
+    kept: list[Change] = []
+    by_size: dict[tuple[int, int], list[int]] = {}
+    mixed = np.random.default_rng(0)
+    weights: dict[int, Array] = {}
+    for own in found:
+        direction = own.change.ravel() / (np.linalg.norm(own.change) if own.fitted == 1 else 1.0)
+        weight = weights.setdefault(direction.size, mixed.standard_normal(direction.size))
+        mark = float(abs(direction @ weight))
+        key = (own.fitted, math.frexp(mark)[1])
+        near = [k for e in (-1, 0, 1) for k in by_size.get((key[0], key[1] + e), [])]
+        same = next((k for k in near if _same(direction, kept[k])), None)
+        if same is None:
+            by_size.setdefault(key, []).append(len(kept))
+            kept.append(own)
+        else:
+            kept[same] = replace(kept[same], alike=(*kept[same].alike, own.hypothesis))
+    return kept
+
+
+def _same(direction: Array, other: Change) -> bool:
+    """Whether a change is another's, where a number is fitted but for its size and sign."""
+    y = other.change.ravel()
+    if y.size != direction.size:
+        return False
+    if other.fitted == 1:
+        y = y / np.linalg.norm(y)
+        y = y if direction @ y > 0.0 else -y
+    return bool(np.linalg.norm(direction - y) <= ALIKE * np.linalg.norm(y))
+
+
+class Stack:
+    """Programs that differ in input and output alone, evaluated together."""
+
+    def __init__(self, outers: Sequence[Variant], evidence: Evidence) -> None:
+        self.outers, self.evidence = outers, evidence
+        groups: dict[tuple[tuple[int, bool], ...], list[int]] = {}
+        self.given = [own.given(evidence.batch) for own in outers]
+        for k, batch in enumerate(self.given):
+            groups.setdefault(shape_of_loads(batch), []).append(k)
+        self.groups = [(members, joined([self.given[k] for k in members])) for members in groups.values()]
+
+    def predicted(self, hypothesis: Hypothesis, base: Variant) -> list[Array]:
+        """What each of them computes under a hypothesis that alters numbers or the recursion, (N, numbers) each."""
+        own = hypothesis.apply(base, ())
+        rows = len(self.evidence.batch)
+        out: list[Array] = [np.empty(0)] * len(self.outers)
+        for members, batch in self.groups:
+            values = run(own.model, batch, own.mutations)
+            for place, k in enumerate(members):
+                part = {key: x[place * rows : (place + 1) * rows] for key, x in values.items()}
+                out[k] = flat(_through(self.outers[k], self.evidence.batch, part), self.evidence.quantities)
+        return out

@@ -1,0 +1,117 @@
+"""Diagnoses as text for a terminal."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from rich.console import Console
+from rich.table import Table
+from rich.text import Text
+
+from rttrr_pin.core.wrench import QUANTITIES
+from rttrr_pin.diagnosis.results import Cause, Diagnosis, Residual
+
+SHOWN = 8
+"""Rows, or alternatives, that are shown unless all are asked for."""
+
+VERDICTS = {"agrees": ("AGREES", "bold green"), "explained": ("EXPLAINED", "bold yellow"), "unexplained": ("UNEXPLAINED", "bold red")}
+
+
+def show_diagnosis(result: Diagnosis, console: Console, full: bool = False) -> None:
+    """The verdict, the causes with their repairs, the differences before and after, and a test to paste."""
+    states = f"{result.n_states:,} {'states of the table' if result.sampling == 'table' else 'telling states'}"
+    console.print(Text(f"{result.robot}:", "bold"), Text(f"{result.subject} against {result.reference}, {states}"))
+    for note in result.notes:
+        console.print(Text(note, "dim"), soft_wrap=True)
+    if not result.passed:
+        console.print(_table(result, full))
+    word, style = VERDICTS[result.verdict]
+    console.print(Text(word, style), Text(_sentence(result)), soft_wrap=True)
+    for number, cause in enumerate(result.causes, 1):
+        _show_cause(cause, f"{number}. " if len(result.causes) > 1 else "", console, full)
+    for k, other in enumerate(result.others[: None if full else 3]):
+        head = "or, which these states do not tell from it: " if k == 0 else "or: "
+        console.print(Text(head + "; ".join(map(told, other))), soft_wrap=True)
+    for line in result.dependence:
+        console.print(Text(f"- {line}"), soft_wrap=True)
+    if result.near_misses:
+        console.print(Text("what comes nearest, and how much of the difference it explains:"))
+        for near in result.near_misses:
+            console.print(Text(f"  {near.explains:7.2%}  {near.sentence}"), soft_wrap=True)
+    if result.counterexample:
+        console.print(Text("a state as simple as could be found, as a test:"))
+        console.print(Text(result.counterexample), soft_wrap=True)
+
+
+def told(cause: Cause) -> str:
+    """A cause with its numbers, in one line."""
+    numbers = values_of(cause.values)
+    return f"{cause.sentence}{f' ({numbers})' if numbers else ''}"
+
+
+def values_of(values: Mapping[str, Any]) -> str:
+    """Numbers by name, in one line."""
+    return ", ".join(f"{name} {_number(x)}" for name, x in values.items())
+
+
+def _number(x: Any) -> str:
+    if isinstance(x, float):
+        return f"{x:.6g}"
+    if isinstance(x, list | tuple):
+        return f"({', '.join(map(_number, x))})"
+    return str(x)
+
+
+def _show_cause(cause: Cause, number: str, console: Console, full: bool) -> None:
+    console.print(Text(f"{number}{cause.program}: {told(cause)}", "bold"), soft_wrap=True)
+    console.print(Text(f"   repair: {cause.repair}"), soft_wrap=True)
+    if cause.equation or cause.line:
+        where = ": ".join(filter(None, [f"equation {cause.equation}" if cause.equation else "", cause.line]))
+        console.print(Text(f"   see {where}"), soft_wrap=True)
+    shown = cause.alternatives if full else cause.alternatives[:SHOWN]
+    if shown:
+        console.print(Text("   these would give the same results in all of these states:"))
+        for other in shown:
+            console.print(Text(f"   - {other.sentence}"), soft_wrap=True)
+        if len(shown) < len(cause.alternatives):
+            console.print(Text(f"   - and {len(cause.alternatives) - len(shown)} more; --full shows all"))
+
+
+def _sentence(result: Diagnosis) -> str:
+    compared = f"{result.residual_before:.2g} times what rounding explains"
+    if result.passed:
+        return f"all differences are rounding ({result.seconds:.1f} s)"
+    if result.verdict == "explained":
+        count = "one cause" if len(result.causes) == 1 else f"{len(result.causes)} causes"
+        return f"by {count}: the largest difference, {compared}, becomes {result.residual_after:.2g} ({result.seconds:.1f} s)"
+    return (
+        f"the largest difference is {compared}, and no set of the {result.tried:,} hypotheses that were tried brings it "
+        f"down to that ({result.seconds:.1f} s)"
+    )
+
+
+def _table(result: Diagnosis, full: bool) -> Table:
+    """The differences at each joint and link that has any, the worst ones."""
+    table = Table("", "at", "rms expected", "largest difference", "error / tolerance", box=None)
+    for column in table.columns[2:]:
+        column.justify = "right"
+    explained = result.verdict == "explained"
+    if explained:
+        table.add_column("with the causes", justify="right")
+    rows = [row for row in result.residuals if row.of_tolerance_before > 1.0]
+    if not full and len(rows) > SHOWN:
+        rows = sorted(rows, key=lambda row: -row.of_tolerance_before)[:SHOWN]
+    for row in sorted(rows, key=lambda row: QUANTITIES.index(row.quantity)):
+        table.add_row(*_cells(row), *([f"{row.of_tolerance_after:.2g}"] if explained else []))
+    return table
+
+
+def _cells(row: Residual) -> list[str | Text]:
+    return [
+        row.quantity,
+        Text(row.at),
+        f"{row.size:.4g} {row.unit}",
+        f"{row.before:.3g} {row.unit}",
+        f"{row.of_tolerance_before:.2g}",
+    ]

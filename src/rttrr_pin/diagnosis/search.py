@@ -1,0 +1,333 @@
+"""The smallest set of hypotheses that brings a difference down to what rounding explains.
+
+Single hypotheses first, all of them, then pairs, then sets that grow by one. Changes that two hypotheses make are
+nearly always additive, so that pairs are ranked by sums of their changes; where they are not (degrees for radians beside
+a wrong mass), one hypothesis is tried on top of the other. What ranks first is then computed as it is, and only what
+lies within the tolerance in every state is an explanation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from rttrr_pin.core.arrays import Array
+from rttrr_pin.diagnosis.evidence import Evidence, screened
+from rttrr_pin.diagnosis.hypothesis import Hypothesis
+from rttrr_pin.diagnosis.predictions import Change, Stack, applied, changes, jacobian, parameter_columns, predicted
+from rttrr_pin.diagnosis.variant import Variant
+
+CONFIRMED = 40
+"""So many of the best sets are computed as they are."""
+
+NEAR = 0.5
+"""A set is computed only if it leaves less than this part of the difference."""
+
+OUTER = 6
+"""On top of so many of the best hypotheses all others are tried."""
+
+MOST = 4
+"""Hypotheses of one set."""
+
+BETTER = 0.1
+"""A set grows further only where it leaves less than this part of the difference."""
+
+FEW = 3
+"""Fitted numbers of a single hypothesis that say more than a pair does."""
+
+ITERATIONS = 8
+"""Of a fit, which is nearly linear."""
+
+FLOOR = 1e-7
+"""A number's scale is at least this part of its size: less is not told apart while sets are ranked."""
+
+Progress = Callable[[int], None]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Explanation:
+    """A set of hypotheses, and how far it goes.
+
+    Attributes:
+        hypotheses: the set.
+        numbers: the fitted numbers of all, one after the other.
+        worst: the largest error / tolerance that is left.
+        left: the part of the difference that is left, root mean square, each number on its own scale.
+        alike: for each hypothesis others that would do the same.
+    """
+
+    hypotheses: tuple[Hypothesis, ...]
+    numbers: tuple[float, ...]
+    worst: float
+    left: float
+    alike: tuple[tuple[Hypothesis, ...], ...] = ()
+
+    @property
+    def explains(self) -> bool:
+        """Whether what is left is rounding."""
+        return self.worst <= 1.0
+
+    @property
+    def fitted(self) -> int:
+        """How many numbers are fitted."""
+        return len(self.numbers)
+
+    @property
+    def cost(self) -> int:
+        """What it takes to say it: a fitted number as much as two hypotheses."""
+        return len(self.hypotheses) + 2 * self.fitted
+
+    def numbers_of(self, k: int) -> tuple[float, ...]:
+        """The fitted numbers of one hypothesis."""
+        first = sum(len(own.start) for own in self.hypotheses[:k])
+        return self.numbers[first : first + len(self.hypotheses[k].start)]
+
+
+Candidate = tuple[float, tuple[Change, ...]]
+"""The part of the difference that is left by ranking, and the changes of a set."""
+
+
+class Search:
+    """Hypotheses against the evidence.
+
+    Attributes:
+        evidence: all states.
+        base: the reference.
+        hypotheses: those that are tried.
+        progress: called with the number of hypotheses tried.
+        sample: the states on which they are tried first.
+        tried: how many times one was tried.
+        ranked: single hypotheses, by how much of the difference they leave.
+    """
+
+    def __init__(
+        self, evidence: Evidence, base: Variant, hypotheses: Sequence[Hypothesis], progress: Progress | None = None
+    ) -> None:
+        self.evidence, self.base, self.hypotheses, self.progress = evidence, base, hypotheses, progress
+        self.sample = part = evidence.part(screened(evidence))
+        self.tried, self.ranked = 0, list[Candidate]()
+        seen, allowed, usual = (np.sqrt(np.mean(x**2, axis=0)) for x in (part.difference, part.tolerance, part.expected))
+        scale = np.maximum(np.maximum(seen, allowed), FLOOR * usual)
+        self.scale = np.broadcast_to(np.where(scale > 0.0, scale, 1.0), part.values.shape)
+        self.target = (part.difference / self.scale).ravel()
+        self.size = float(np.linalg.norm(self.target))
+
+    def run(self) -> list[Explanation]:
+        """The explanations that cost least, best first; where there is none, what comes nearest."""
+        singles = self.changes_on(self.base)
+        self.ranked = sorted((self._rank((), one) for one in singles), key=_order)
+        best = self.confirmed(self.ranked)
+        if any(own.explains and own.fitted <= FEW for own in best):
+            return self._cheapest(best)
+        for stage in (self._sums, self._conventions, self._on_top):
+            best += self.confirmed(stage(singles))
+            if any(own.explains for own in best):
+                return self._cheapest(best)
+        grown = sorted(best, key=lambda own: own.left)
+        for _ in range(MOST - 2):
+            grown = [own for own in grown if own.left < BETTER and len(own.hypotheses) > 1][:2]
+            grown = sorted(self._grown(grown), key=lambda own: own.left)
+            best += grown
+            if any(own.explains for own in grown):
+                return self._cheapest(best)
+        return sorted(best, key=lambda own: (own.left, own.cost))
+
+    def changes_on(self, outer: Variant) -> list[Change]:
+        """What each hypothesis changes on top of a program."""
+        found = changes(outer, self.hypotheses, self.sample, self.scale)
+        self.tried += len(self.hypotheses)
+        if self.progress is not None:
+            self.progress(self.tried)
+        return found
+
+    def _rank(self, before: tuple[Change, ...], one: Change, target: Array | None = None) -> Candidate:
+        """A hypothesis more, by how much of the difference is left."""
+        return _left(self.target if target is None else target, one) / self.size, (*before, one)
+
+    def _sums(self, singles: Sequence[Change]) -> list[Candidate]:
+        """Pairs by the sum of their changes."""
+        fixed = [own for own in singles if not own.fitted]
+        free = [own for own in singles if own.fitted]
+        found: list[Candidate] = []
+        if fixed:
+            A = np.array([own.change for own in fixed])
+            gram, along = A @ A.T, A @ self.target
+            square = self.size**2 - 2 * (along[:, None] + along) + 2 * gram + np.diag(gram) + np.diag(gram)[:, None]
+            square[np.tril_indices(len(fixed))] = np.inf
+            for k in np.argsort(square, axis=None)[: 4 * CONFIRMED]:
+                i, j = divmod(int(k), len(fixed))
+                if np.isfinite(square[i, j]):
+                    found.append((_root(square[i, j]) / self.size, (fixed[i], fixed[j])))
+        for n, own in enumerate(free):
+            Q = _basis(own.change)
+            target = self.target - Q @ (Q.T @ self.target)
+            if fixed:
+                rest = target - (A - (A @ Q) @ Q.T)
+                lengths = np.linalg.norm(rest, axis=1)
+                found += [(float(lengths[k]) / self.size, (own, fixed[k])) for k in np.argsort(lengths)[:4]]
+            for other in free[n + 1 :]:
+                projected = other.change - (other.change @ Q) @ Q.T
+                found.append((_distance(target, projected) / self.size, (own, other)))
+        return sorted(found, key=_order)
+
+    def _conventions(self, singles: Sequence[Change]) -> list[Candidate]:
+        """What alters numbers or the recursion at all links, on top of each convention."""
+        inner = [own for own in self.hypotheses if _general(own)]
+        outers = [own for own in singles if own.hypothesis.kind == "convention"]
+        variants = [self._alone(own) for own in outers]
+        pairs = [(own, variant) for own, variant in zip(outers, variants, strict=True) if variant is not None]
+        if not pairs:
+            return []
+        found: list[Candidate] = []
+        stack = Stack([variant for _, variant in pairs], self.sample)
+        without = [predicted(variant, self.sample) for _, variant in pairs]
+        for own in inner:
+            if own.start or own.parameters is not None:
+                continue
+            for (outer, _), values, base in zip(pairs, stack.predicted(own, self.base), without, strict=True):
+                change = ((values - base) / self.scale).ravel()
+                rest = (self.sample.values - values) / self.scale
+                if np.isfinite(change).all():
+                    found.append((float(np.linalg.norm(rest)) / self.size, (outer, Change(own, change))))
+            self.tried += 1
+        for (outer, variant), base in zip(pairs, without, strict=True):
+            target = ((self.sample.values - base) / self.scale).ravel()
+            columns = parameter_columns(variant, self.sample) / self.scale.ravel()
+            for own in self.hypotheses:
+                if own.parameters is not None:
+                    found.append(self._rank((outer,), Change(own, own.parameters @ columns), target))
+        return sorted(found, key=_order)
+
+    def _on_top(self, singles: Sequence[Change]) -> list[Candidate]:
+        """All hypotheses on top of those that come nearest by themselves."""
+        found: list[Candidate] = []
+        for _, (own,) in self.ranked[:OUTER]:
+            variant = self._alone(own)
+            if variant is not None:
+                target = ((self.sample.values - predicted(variant, self.sample)) / self.scale).ravel()
+                found += [self._rank((own,), one, target) for one in self.changes_on(variant)]
+        return sorted(found, key=_order)
+
+    def _alone(self, own: Change) -> Variant | None:
+        """The program under one hypothesis, its numbers fitted as if it were the only one."""
+        fit = self.fit((own.hypothesis,), self.sample)
+        variant = applied(self.base, (own.hypothesis,), fit.numbers)
+        return variant if np.isfinite(predicted(variant, self.sample)).all() else None
+
+    def _grown(self, sets: Iterable[Explanation]) -> list[Explanation]:
+        """Each set with a hypothesis more."""
+        candidates: list[Candidate] = []
+        for own in sets:
+            variant = applied(self.base, own.hypotheses, own.numbers)
+            target = ((self.sample.values - predicted(variant, self.sample)) / self.scale).ravel()
+            before = tuple(Change(one, np.empty(0)) for one in own.hypotheses)
+            candidates += [self._rank(before, one, target) for one in self.changes_on(variant)]
+        return self.confirmed(sorted(candidates, key=_order))
+
+    def confirmed(self, candidates: Sequence[Candidate]) -> list[Explanation]:
+        """The best candidates, computed as they are; on all states where the sample is explained."""
+        found: list[Explanation] = []
+        for left, own in candidates[:CONFIRMED]:
+            if left > NEAR and found:
+                break
+            fit = self.fit(tuple(one.hypothesis for one in own), self.sample)
+            if fit.explains and len(self.evidence.batch) > len(self.sample.batch):
+                fit = self.fit(fit.hypotheses, self.evidence, fit.numbers)
+            found.append(Explanation(fit.hypotheses, fit.numbers, fit.worst, fit.left, tuple(one.alike for one in own)))
+        return found
+
+    def fit(
+        self, hypotheses: tuple[Hypothesis, ...], evidence: Evidence, start: Sequence[float] | None = None
+    ) -> Explanation:
+        """Fit the numbers of a set by Gauss-Newton, each equation divided by its tolerance; then round them if one may."""
+        neutral = [x for own in hypotheses for x in own.neutral]
+        towards = [x for own in hypotheses for x in own.start]
+        numbers = [*(neutral if start is None else start)]
+        weight = 1.0 / np.maximum(evidence.tolerance + evidence.rounding, np.finfo(float).tiny)
+        weight /= weight.max()
+        best = self._judged(hypotheses, numbers, evidence)
+        for k in range(ITERATIONS if numbers else 0):
+            base = predicted(applied(self.base, hypotheses, numbers), evidence)
+            aim = towards if k == 0 and start is None else numbers
+            J = jacobian(self.base, hypotheses, numbers, aim, evidence, base)
+            rest = ((evidence.values - base) * weight).ravel()
+            if not (np.isfinite(J).all() and np.isfinite(rest).all()):
+                break
+            step = np.linalg.lstsq((J * weight.ravel()).T, rest, rcond=None)[0]
+            numbers = [x + float(dx) for x, dx in zip(numbers, step, strict=True)]
+            after = self._judged(hypotheses, numbers, evidence)
+            stuck = k > 1 and after.left > 0.5 * best.left
+            best = min(after, best, key=lambda own: (own.left, own.worst)) if k else after
+            if best.explains or stuck:
+                break
+        return self._rounded(best, evidence) if best.explains and numbers else best
+
+    def _rounded(self, own: Explanation, evidence: Evidence) -> Explanation:
+        """The same with numbers of few digits, where they explain it as well."""
+        for digits in (2, 3, 4, 6, 9):
+            numbers = [float(f"{x:.{digits}g}") for x in own.numbers]
+            other = self._judged(own.hypotheses, numbers, evidence)
+            if other.explains and other.left <= 2.0 * own.left:
+                return other
+        return own
+
+    def _judged(self, hypotheses: tuple[Hypothesis, ...], numbers: Sequence[float], evidence: Evidence) -> Explanation:
+        """How far a set goes."""
+        values = predicted(applied(self.base, hypotheses, numbers), evidence)
+        growth = _growth(values, evidence.expected)
+        worst = float(evidence.of_tolerance(values, growth).max(initial=0.0))
+        scale = self.scale[0]
+        with np.errstate(over="ignore", invalid="ignore"):
+            sizes = [float(np.linalg.norm(x / scale)) for x in (evidence.values - values, evidence.difference)]
+        left = sizes[0] / sizes[1] if sizes[1] else 0.0
+        return Explanation(hypotheses, tuple(numbers), worst, left if np.isfinite(left) else np.inf)
+
+    def _cheapest(self, found: Sequence[Explanation]) -> list[Explanation]:
+        """Explanations that cost as little as the cheapest, those that leave least first."""
+        explaining = [own for own in found if own.explains]
+        least = min(own.cost for own in explaining)
+        return sorted((own for own in explaining if own.cost == least), key=lambda own: own.worst)
+
+
+def _growth(values: Array, expected: Array) -> Array:
+    """How many times as large as expected results a program's are, number by number, at least 1: so its rounding is."""
+    sizes = [np.sqrt(np.mean(x**2, axis=0)) for x in (values, expected)]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(sizes[1] > 0.0, np.maximum(sizes[0] / sizes[1], 1.0), 1.0)
+
+
+def _general(own: Hypothesis) -> bool:
+    """Whether it alters numbers or the recursion, and is no error of one link."""
+    return own.kind in ("parameters", "joint") or (own.kind == "mechanics" and own.link is None and own.joint is None)
+
+
+def _order(candidate: Candidate) -> tuple[float, int]:
+    left, own = candidate
+    return round(left, 9), sum(one.fitted for one in own)
+
+
+def _left(target: Array, one: Change) -> float:
+    """The length of what a change leaves of a difference, its numbers fitted."""
+    if not one.fitted:
+        return float(np.linalg.norm(target - one.change))
+    return _distance(target, one.change)
+
+
+def _distance(target: Array, rows: Array) -> float:
+    """How far a vector is from the span of some."""
+    Q = _basis(rows)
+    return float(np.linalg.norm(target - Q @ (Q.T @ target)))
+
+
+def _basis(rows: Array) -> Array:
+    """An orthonormal basis of what some vectors span, (numbers, rank)."""
+    lengths = np.linalg.norm(rows, axis=1)
+    U, sigma, _ = np.linalg.svd((rows[lengths > 0.0] / lengths[lengths > 0.0, None]).T, full_matrices=False)
+    return np.asarray(U[:, sigma > 1e-10 * sigma.max(initial=0.0)])
+
+
+def _root(square: float) -> float:
+    return float(np.sqrt(max(square, 0.0)))
