@@ -9,12 +9,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.inertia import SpatialInertia
 from rttrr_pin.core.model import Link, Model
-from rttrr_pin.core.algebra import Matrix, Vector
 from rttrr_pin.diagnosis.evidence import Evidence, flat, joined, shape_of_loads
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
-from rttrr_pin.diagnosis.variant import Variant, run
+from rttrr_pin.diagnosis.mutations import Mutation
+from rttrr_pin.diagnosis.variant import Values, Variant, run
 from rttrr_pin.implementations.protocol import Batch
 
 TENSORS = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))
@@ -44,17 +43,15 @@ class Change:
         return len(self.hypothesis.start)
 
 
-def changes(
-    outer: Variant, hypotheses: Sequence[Hypothesis], evidence: Evidence, scale: Array, progress: object = None
-) -> list[Change]:
-    """The visible changes of hypotheses on top of a program, over all numbers, each divided by its scale.
+Raw = tuple[Hypothesis, Array]
+"""A hypothesis and its change, (numbers,) or (fitted, numbers), in the units of the numbers."""
 
-    Those that change nothing that can be seen are left out; of those that change the same the first one stands for all.
-    """
+
+def raw_changes(outer: Variant, hypotheses: Sequence[Hypothesis], evidence: Evidence) -> list[Raw]:
+    """What each hypothesis changes on top of a program, whatever was seen; those that do not compute are left out."""
     base = predicted(outer, evidence)
     columns: Array | None = None
-    visible = (evidence.tolerance + evidence.rounding).ravel()
-    found: list[Change] = []
+    found: list[Raw] = []
     for own in hypotheses:
         if own.parameters is not None:
             if columns is None:
@@ -65,10 +62,15 @@ def changes(
         else:
             with np.errstate(invalid="ignore"):
                 change = (predicted(own.apply(outer, ()), evidence) - base).ravel()
-        if not np.isfinite(change).all() or not (np.abs(change) > visible).any():
-            continue
-        found.append(Change(own, change / scale.ravel()))
-    return _distinct(found)
+        if np.isfinite(change).all():
+            found.append((own, change))
+    return found
+
+
+def visible_changes(raw: Sequence[Raw], evidence: Evidence, scale: Array) -> list[Change]:
+    """The changes that can be seen, each number divided by its scale; of equal ones the first stands for all."""
+    least, divisor = (evidence.tolerance + evidence.rounding).ravel(), scale.ravel()
+    return _distinct([Change(own, change / divisor) for own, change in raw if (np.abs(change) > least).any()])
 
 
 def predicted(variant: Variant, evidence: Evidence) -> Array:
@@ -105,64 +107,39 @@ def applied(outer: Variant, hypotheses: Sequence[Hypothesis], numbers: Sequence[
 
 
 def parameter_columns(outer: Variant, evidence: Evidence) -> Array:
-    """The change by each inertial parameter, (10 links, numbers), in the order of `Robot.inertial_parameters`.
-
-    Of a robot that has this one body alone: no difference of large numbers.
-    """
-    model, given = outer.model, outer.given(evidence.batch)
-    base = run(model, given, outer.mutations)
-    shown = flat(_through(outer, evidence.batch, base), evidence.quantities)
-    bare = replace(given, loads=())
-    rows = []
-    for i in range(len(model.links)):
-        for values in _of_body(model, i, bare, outer):
-            if outer.outputs:
-                moved = {key: base[key] + x for key, x in values.items()}
-                column = flat(_through(outer, evidence.batch, moved), evidence.quantities) - shown
-            else:
-                column = flat(values, evidence.quantities)
-            rows.append(column.ravel())
-    return np.array(rows)
+    """The change by each inertial parameter, (10 links, numbers), in the order of `Robot.inertial_parameters`."""
+    return Stack([outer], evidence).parameter_columns()[0]
 
 
-def _through(outer: Variant, batch: Batch, values: dict[str, Array]) -> dict[str, Array]:
+def _through(outer: Variant, batch: Batch, values: Values) -> Values:
     for own in outer.outputs:
         values = own(batch, values)
     return values
 
 
-def _of_body(model: Model, i: int, batch: Batch, outer: Variant) -> Iterator[dict[str, Array]]:
-    """What a unit of each parameter of link i, of mass, first moment and tensor about the origin, gives."""
+def _of_bodies(model: Model, batch: Batch, mutations: Sequence[Mutation]) -> Iterator[Values]:
+    """What a unit of each parameter of each link gives: of mass, first moment and tensor about the origin.
 
-    def of(m: float, c: Array, J: Array) -> dict[str, Array]:
+    Of a robot that has this one body alone: no difference of large numbers.
+    """
+    alone = model.without_joint_effects()
+
+    def of(i: int, m: float, c: Array, J: Array) -> Values:
         links = [Link(own.name) for own in model.links]
         links[i] = Link(links[i].name, m, c, J)
-        alone = replace(model.without_joint_effects(), links=tuple(links))
-        return run(alone, batch, outer.mutations)
+        return run(replace(alone, links=tuple(links)), batch, mutations)
 
     nothing, none = np.zeros(3), np.zeros((3, 3))
-    of_mass = of(1.0, nothing, none)
-    yield of_mass
-    for k in range(3):
-        c = np.eye(3)[k]
-        centred = of(1.0, c, -(np.eye(3) - np.outer(c, c)))  # about the origin it has no tensor
-        yield {key: x - of_mass[key] for key, x in centred.items()}
-    for r, s in TENSORS:
-        J = np.zeros((3, 3))
-        J[r, s] = J[s, r] = 1.0
-        yield of(0.0, nothing, J)
-
-
-def with_parameters(link: Link, change: Array) -> Link:
-    """A link whose ten parameters are changed by so much; the tensor about the origin."""
-    own = SpatialInertia.of(link.mass, Vector.of(link.com), Matrix.of(link.inertia))
-    J = np.zeros((3, 3))
-    for (r, s), x in zip(TENSORS, change[4:], strict=True):
-        J[r, s] = J[s, r] = x
-    other = SpatialInertia(float(change[0]), Vector.of(change[1:4]), Matrix.of(J))
-    com, tensor = (own + other).about_com()
-    symmetric = np.array(tensor.array)
-    return Link(link.name, float((own + other).m), np.array([*com]), (symmetric + symmetric.T) / 2)
+    for i in range(len(model.links)):
+        of_mass = of(i, 1.0, nothing, none)
+        yield of_mass
+        for c in np.eye(3):
+            centred = of(i, 1.0, c, -(np.eye(3) - np.outer(c, c)))  # about the origin it has no tensor
+            yield {key: x - of_mass[key] for key, x in centred.items()}
+        for r, s in TENSORS:
+            J = none.copy()
+            J[r, s] = J[s, r] = 1.0
+            yield of(i, 0.0, nothing, J)
 
 
 def _distinct(found: list[Change]) -> list[Change]:
@@ -202,8 +179,8 @@ class Stack:
 
     def __init__(self, outers: Sequence[Variant], evidence: Evidence) -> None:
         self.outers, self.evidence = outers, evidence
-        groups: dict[tuple[tuple[int, bool], ...], list[int]] = {}
         self.given = [own.given(evidence.batch) for own in outers]
+        groups: dict[tuple[tuple[int, bool], ...], list[int]] = {}
         for k, batch in enumerate(self.given):
             groups.setdefault(shape_of_loads(batch), []).append(k)
         self.groups = [(members, joined([self.given[k] for k in members])) for members in groups.values()]
@@ -211,11 +188,36 @@ class Stack:
     def predicted(self, hypothesis: Hypothesis, base: Variant) -> list[Array]:
         """What each of them computes under a hypothesis that alters numbers or the recursion, (N, numbers) each."""
         own = hypothesis.apply(base, ())
-        rows = len(self.evidence.batch)
         out: list[Array] = [np.empty(0)] * len(self.outers)
         for members, batch in self.groups:
             values = run(own.model, batch, own.mutations)
             for place, k in enumerate(members):
-                part = {key: x[place * rows : (place + 1) * rows] for key, x in values.items()}
-                out[k] = flat(_through(self.outers[k], self.evidence.batch, part), self.evidence.quantities)
+                out[k] = self._shown(k, self._slice(values, place))
         return out
+
+    def parameter_columns(self) -> list[Array]:
+        """The change by each inertial parameter, of each of them, (10 links, numbers)."""
+        first = self.outers[0]
+        rows: list[list[Array]] = [[] for _ in self.outers]
+        for members, batch in self.groups:
+            base = run(first.model, batch, first.mutations)
+            before = [self._slice(base, place) for place in range(len(members))]
+            shown = [self._shown(k, own) for k, own in zip(members, before, strict=True)]
+            for values in _of_bodies(first.model, replace(batch, loads=()), first.mutations):
+                for place, k in enumerate(members):
+                    own = self._slice(values, place)
+                    if self.outers[k].outputs:  # which need not be linear
+                        own = {key: before[place][key] + x for key, x in own.items()}
+                        rows[k].append((self._shown(k, own) - shown[place]).ravel())
+                    else:
+                        rows[k].append(flat(own, self.evidence.quantities).ravel())
+        return [np.array(own) for own in rows]
+
+    def _slice(self, values: Values, place: int) -> Values:
+        """The part of one program."""
+        rows = len(self.evidence.batch)
+        return {key: x[place * rows : (place + 1) * rows] for key, x in values.items()}
+
+    def _shown(self, k: int, values: Values) -> Array:
+        """What a program makes of its results."""
+        return flat(_through(self.outers[k], self.evidence.batch, values), self.evidence.quantities)

@@ -17,7 +17,7 @@ import numpy as np
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.diagnosis.evidence import Evidence, screened
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
-from rttrr_pin.diagnosis.predictions import Change, Stack, applied, changes, jacobian, parameter_columns, predicted
+from rttrr_pin.diagnosis.predictions import Change, Raw, Stack, applied, jacobian, predicted, raw_changes, visible_changes
 from rttrr_pin.diagnosis.variant import Variant
 
 CONFIRMED = 40
@@ -98,15 +98,22 @@ class Search:
         base: the reference.
         hypotheses: those that are tried.
         progress: called with the number of hypotheses tried.
+        raw: what they change on the sample, where it is known already.
         sample: the states on which they are tried first.
         tried: how many times one was tried.
         ranked: single hypotheses, by how much of the difference they leave.
     """
 
     def __init__(
-        self, evidence: Evidence, base: Variant, hypotheses: Sequence[Hypothesis], progress: Progress | None = None
+        self,
+        evidence: Evidence,
+        base: Variant,
+        hypotheses: Sequence[Hypothesis],
+        progress: Progress | None = None,
+        raw: Sequence[Raw] | None = None,
     ) -> None:
         self.evidence, self.base, self.hypotheses, self.progress = evidence, base, hypotheses, progress
+        self.raw = raw
         self.sample = part = evidence.part(screened(evidence))
         self.tried, self.ranked = 0, list[Candidate]()
         seen, allowed, usual = (np.sqrt(np.mean(x**2, axis=0)) for x in (part.difference, part.tolerance, part.expected))
@@ -117,7 +124,8 @@ class Search:
 
     def run(self) -> list[Explanation]:
         """The explanations that cost least, best first; where there is none, what comes nearest."""
-        singles = self.changes_on(self.base)
+        self.raw = raw_changes(self.base, self.hypotheses, self.sample) if self.raw is None else self.raw
+        singles = self._visible(self.raw)
         self.ranked = sorted((self._rank((), one) for one in singles), key=_order)
         best = self.confirmed(self.ranked)
         if any(own.explains and own.fitted <= FEW for own in best):
@@ -137,11 +145,14 @@ class Search:
 
     def changes_on(self, outer: Variant) -> list[Change]:
         """What each hypothesis changes on top of a program."""
-        found = changes(outer, self.hypotheses, self.sample, self.scale)
+        return self._visible(raw_changes(outer, self.hypotheses, self.sample))
+
+    def _visible(self, raw: Sequence[Raw]) -> list[Change]:
+        """Those that can be seen."""
         self.tried += len(self.hypotheses)
         if self.progress is not None:
             self.progress(self.tried)
-        return found
+        return visible_changes(raw, self.sample, self.scale)
 
     def _rank(self, before: tuple[Change, ...], one: Change, target: Array | None = None) -> Candidate:
         """A hypothesis more, by how much of the difference is left."""
@@ -193,9 +204,9 @@ class Search:
                 if np.isfinite(change).all():
                     found.append((float(np.linalg.norm(rest)) / self.size, (outer, Change(own, change))))
             self.tried += 1
-        for (outer, variant), base in zip(pairs, without, strict=True):
+        for (outer, _), base, raw in zip(pairs, without, stack.parameter_columns(), strict=True):
             target = ((self.sample.values - base) / self.scale).ravel()
-            columns = parameter_columns(variant, self.sample) / self.scale.ravel()
+            columns = raw / self.scale.ravel()
             for own in self.hypotheses:
                 if own.parameters is not None:
                     found.append(self._rank((outer,), Change(own, own.parameters @ columns), target))
