@@ -8,7 +8,7 @@ import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
-from rttrr_pin.diagnosis.evidence import Evidence, flat, part_of, places, spread
+from rttrr_pin.diagnosis.evidence import Evidence, flat, loaded, part_of, places, spread
 from rttrr_pin.errors import RttrrError
 from rttrr_pin.exact.enclosures import enclose
 from rttrr_pin.implementations import Batch, Implementation
@@ -30,7 +30,7 @@ def counterexample(robot: object, programs: Sequence[Implementation], evidence: 
     """Python code of a test, whose expected value is proven; empty where no state without payload differs."""
     batch = evidence.batch
     ratios = evidence.of_tolerance(evidence.expected)
-    bare = ~_loaded(batch)
+    bare = ~loaded(batch)
     failing = np.flatnonzero((ratios > 1.0).any(axis=1) & bare)
     if not len(failing):
         return ""
@@ -48,14 +48,6 @@ def counterexample(robot: object, programs: Sequence[Implementation], evidence: 
         subject, ratio = evidence.values[failing[order[:1]]], ratios[failing[order[:1]]]
     k = int(np.argmax(ratio[0]))
     return _as_test(state, places(batch.model, evidence.quantities), k, float(subject[0, k]))
-
-
-def _loaded(batch: Batch) -> Array:
-    loaded = np.zeros(len(batch), dtype=bool)
-    for load in batch.loads:
-        for x in (load.f, load.n):
-            loaded |= np.broadcast_to(x != 0.0, (len(batch), 3)).any(axis=1)
-    return loaded
 
 
 def _bare(batch: Batch) -> Batch:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.diagnosis.evidence import Evidence, flat, places, spread
+from rttrr_pin.diagnosis.evidence import Evidence, flat, loaded, places, spread
 from rttrr_pin.errors import RttrrError
 from rttrr_pin.implementations import Batch, Implementation
 from rttrr_pin.implementations.protocol import evaluated
@@ -136,16 +136,13 @@ def _of_rows(evidence: Evidence) -> list[str]:
     """What the rows of a table tell."""
     batch, bad = evidence.batch, (evidence.of_tolerance(evidence.expected) > 1.0).any(axis=1)
     v, a = ((getattr(batch, name) != 0.0).any(axis=1) for name in "va")
-    loaded = np.zeros(len(batch), dtype=bool)
-    for load in batch.loads:
-        for x in (load.f, load.n):
-            loaded |= np.broadcast_to(x != 0.0, (len(batch), 3)).any(axis=1)
+    with_load = loaded(batch)
     kinds = {
-        "at rest": ~v & ~a & ~loaded,
-        "with rates alone": v & ~a & ~loaded,
-        "with accelerations alone": ~v & a & ~loaded,
-        "with both": v & a & ~loaded,
-        "with a payload": loaded,
+        "at rest": ~v & ~a & ~with_load,
+        "with rates alone": v & ~a & ~with_load,
+        "with accelerations alone": ~v & a & ~with_load,
+        "with both": v & a & ~with_load,
+        "with a payload": with_load,
     }
     lines = [f"{int(bad[rows].sum())} of {int(rows.sum())} states {kind} differ" for kind, rows in kinds.items() if rows.any()]
     missing = [kind for kind, rows in kinds.items() if not rows.any()]

@@ -10,6 +10,7 @@ import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
+from rttrr_pin.core.payload import RandomPayload, load_of
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.diagnosis.conventions import conventions
 from rttrr_pin.diagnosis.counterexample import counterexample
@@ -60,7 +61,8 @@ def diagnose(
         reference: what it is compared with. Where that differs from the recursion too, its causes are told as well.
         n_states: how many telling states (`sample_states`); of a table all of its own.
         seed: of the states.
-        payload: what the robot exerts on its surroundings: None, a wrench, or `RandomPayload()`.
+        payload: what the robot exerts on its surroundings: nothing; a wrench, the same in every state; or
+            `RandomPayload()`, in some of the states.
         progress: called with the number of hypotheses tried so far.
 
     Returns:
@@ -89,7 +91,10 @@ def _states(
     """Those of a table among the programs; else telling ones."""
     tables = [one.states() for one in programs if hasattr(one, "states")]
     if not tables:
-        return sample_states(robot, n_states, seed, payload).batch, "telling"
+        random = payload if isinstance(payload, RandomPayload) else None
+        states = sample_states(robot, n_states, seed, random).states
+        fixed = () if payload is None or random is not None else (load_of(states.model, payload),)
+        return replace(states, loads=states.loads or fixed), "telling"
     if len(tables) > 1 and not all(np.array_equal(getattr(tables[0], x), getattr(tables[1], x)) for x in "qva"):
         raise InputError(f"{programs[0].name} and {programs[1].name} are of different states: diagnose them one by one")
     return tables[0], "table"

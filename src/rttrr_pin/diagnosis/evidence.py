@@ -106,35 +106,43 @@ def shape_of_loads(batch: Batch) -> tuple[tuple[int, bool], ...]:
     return tuple((load.link, load.in_base) for load in batch.loads)
 
 
-def screened(evidence: Evidence, most: int = SCREENED) -> NDArray[np.int64]:
-    """States to try hypotheses on: of each kind some, simple ones and those that differ most.
+def screened(batch: Batch, most: int = SCREENED) -> NDArray[np.int64]:
+    """States to try hypotheses on, (most,) or fewer: of each kind some, half of them of the one in which most moves.
 
-    A kind is which of q, v, a and payload are zero, and how many rates and accelerations are not.
+    A kind is how many rates and accelerations are not zero, and whether there is a payload. Every term shows where all
+    move; what a term is of shows where little does.
     """
-    batch = evidence.batch
-    loaded = np.zeros(len(batch), dtype=bool)
-    for load in batch.loads:
-        loaded |= (np.broadcast_to(load.f, (len(batch), 3)) != 0).any(axis=1)
-        loaded |= (np.broadcast_to(load.n, (len(batch), 3)) != 0).any(axis=1)
     counts = [np.minimum((getattr(batch, name) != 0).sum(axis=1), 3) for name in "va"]
-    kinds = np.stack([*counts, loaded, (batch.q != 0).any(axis=1)], axis=1)
-    sizes = evidence.of_tolerance(evidence.expected).max(axis=1)
+    kinds = np.stack([*counts, loaded(batch)], axis=1).astype(int).tolist()
     by_kind: dict[tuple[int, ...], list[int]] = {}
-    for k, kind in enumerate(map(tuple, kinds.astype(int).tolist())):
-        by_kind.setdefault(kind, []).append(k)
-    # Richest kind first, since there every term shows; within a kind large and ordinary differences alternate.
-    queues = []
-    for kind in sorted(by_kind, key=lambda kind: -sum(kind)):
-        own = sorted(by_kind[kind], key=lambda k: -sizes[k])
-        queues.append([k for pair in zip(own, own[len(own) // 2 :] + own, strict=False) for k in pair])
-    chosen: dict[int, None] = {}
-    depth = 0
-    while len(chosen) < min(most, len(batch)):
-        for number, queue in enumerate(queues):
-            for k in queue[depth : depth + (3 if number == 0 else 1)]:
-                if len(chosen) < most:
-                    chosen[k] = None
-        depth += 3 if len(queues) == 1 else 1
-        if depth > 2 * len(batch) + 3:
-            break
-    return np.array(sorted(chosen), dtype=np.int64)
+    for k, kind in enumerate(kinds):
+        by_kind.setdefault(tuple(kind), []).append(k)
+    richest, *others = sorted(by_kind.values(), key=lambda rows: (-sum(kinds[rows[0]]), rows))
+    share = max(2, most // (2 * len(others))) if others else 0
+    chosen = [k for rows in others for k in _spread_out(rows, share)][: most // 2]
+    chosen += _spread_out(richest, most - len(chosen))
+    left = sorted(set(range(len(batch))) - set(chosen))
+    return np.array(sorted([*chosen, *_spread_out(left, most - len(chosen))]), dtype=np.int64)
+
+
+def with_worst(rows: NDArray[np.int64], ratios: Array) -> NDArray[np.int64]:
+    """The states, a third of them replaced by those that differ most, (N,) error / tolerance."""
+    kept = rows[np.arange(len(rows)) % 3 != 0]
+    worst = [k for k in np.argsort(-ratios, kind="stable").tolist() if k not in kept][: len(rows) - len(kept)]
+    return np.array(sorted([*kept.tolist(), *worst]), dtype=np.int64)
+
+
+def loaded(batch: Batch) -> NDArray[np.bool_]:
+    """In which states there is a payload, (N,)."""
+    found = np.zeros(len(batch), dtype=bool)
+    for load in batch.loads:
+        for x in (load.f, load.n):
+            found |= np.broadcast_to(x != 0.0, (len(batch), 3)).any(axis=1)
+    return found
+
+
+def _spread_out(rows: Sequence[int], most: int) -> list[int]:
+    """So many of the rows at most, the first one and others far apart."""
+    if most <= 0 or not rows:
+        return []
+    return [rows[k] for k in np.unique(np.linspace(0, len(rows) - 1, min(most, len(rows))).astype(int)).tolist()]

@@ -10,12 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
+from itertools import islice
 from itertools import pairwise
 
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.diagnosis.evidence import Evidence, screened
+from rttrr_pin.diagnosis.evidence import Evidence, screened, with_worst
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.predictions import Change, Raw, Stack, applied, jacobian, predicted, raw_changes, visible_changes
 from rttrr_pin.diagnosis.variant import Variant
@@ -38,8 +39,14 @@ BETTER = 0.1
 FEW = 3
 """Fitted numbers of a single hypothesis that say more than a pair does."""
 
+FAR = 100.0
+"""Times what rounding explains: a change that leaves more is not computed again."""
+
 ITERATIONS = 8
 """Of a fit, which is nearly linear."""
+
+HIDDEN = 0.01
+"""If the largest difference of the sample is less than this part of the largest, the worst states are taken in."""
 
 FLOOR = 1e-7
 """A number's scale is at least this part of its size: less is not told apart while sets are ranked."""
@@ -114,7 +121,11 @@ class Search:
     ) -> None:
         self.evidence, self.base, self.hypotheses, self.progress = evidence, base, hypotheses, progress
         self.raw = raw
-        self.sample = part = evidence.part(screened(evidence))
+        rows = screened(evidence.batch)
+        ratios = evidence.of_tolerance(evidence.expected).max(axis=1)
+        if ratios[rows].max() < HIDDEN * ratios.max():
+            rows, self.raw = with_worst(rows, ratios), None
+        self.sample = part = evidence.part(rows)
         self.tried, self.ranked = 0, list[Candidate]()
         seen, allowed, usual = (np.sqrt(np.mean(x**2, axis=0)) for x in (part.difference, part.tolerance, part.expected))
         scale = np.maximum(np.maximum(seen, allowed), FLOOR * usual)
@@ -241,7 +252,8 @@ class Search:
     def confirmed(self, candidates: Sequence[Candidate]) -> list[Explanation]:
         """The best candidates, computed as they are; on all states where the sample is explained."""
         found: list[Explanation] = []
-        for left, own in candidates[:CONFIRMED]:
+        promising = (own for own in candidates if not (len(own[1]) == 1 and found and self._hopeless(own[1][0])))
+        for left, own in islice(promising, CONFIRMED):
             if left > NEAR and found:
                 break
             fit = self.fit(tuple(one.hypothesis for one in own), self.sample)
@@ -249,6 +261,15 @@ class Search:
                 fit = self.fit(fit.hypotheses, self.evidence, fit.numbers)
             found.append(Explanation(fit.hypotheses, fit.numbers, fit.worst, fit.left, tuple(one.alike for one in own)))
         return found
+
+    def _hopeless(self, one: Change) -> bool:
+        """Whether a change, which is known as it is, leaves far more than rounding."""
+        if one.fitted and one.hypothesis.parameters is None:
+            return False  # it may not be linear
+        rest = self.target - one.change if not one.fitted else _rest(self.target, one.change)
+        allowed = (self.sample.tolerance + self.sample.rounding) / self.scale
+        growth = np.broadcast_to(_growth(self.sample.values, self.sample.expected), allowed.shape)
+        return bool((np.abs(rest) > FAR * growth.ravel() * allowed.ravel()).any())
 
     def fit(
         self, hypotheses: tuple[Hypothesis, ...], evidence: Evidence, start: Sequence[float] | None = None
@@ -329,8 +350,13 @@ def _left(target: Array, one: Change) -> float:
 
 def _distance(target: Array, rows: Array) -> float:
     """How far a vector is from the span of some."""
+    return float(np.linalg.norm(_rest(target, rows)))
+
+
+def _rest(target: Array, rows: Array) -> Array:
+    """What is left of a vector without what lies in the span of some."""
     Q = _basis(rows)
-    return float(np.linalg.norm(target - Q @ (Q.T @ target)))
+    return np.asarray(target - Q @ (Q.T @ target))
 
 
 def _basis(rows: Array) -> Array:
