@@ -29,6 +29,8 @@ if TYPE_CHECKING:
     from rttrr_pin.core.wrench import Wrench as Wrench
     from rttrr_pin.derivation import derive as derive
     from rttrr_pin.diagnosis import compare_robots as compare_robots
+    from rttrr_pin.diagnosis import diagnose as diagnose
+    from rttrr_pin.diagnosis import sample_states as sample_states
     from rttrr_pin.errors import InputError as InputError
     from rttrr_pin.errors import RttrrError as RttrrError
     from rttrr_pin.exact import Enclosures as Enclosures
@@ -57,7 +59,7 @@ __getattr__, __dir__, __all__ = lazy(
         "core.statics": ("WrenchEstimate",),
         "core.wrench": ("LinkWrenches", "Wrench"),
         "derivation": ("derive",),
-        "diagnosis": ("compare_robots",),
+        "diagnosis": ("compare_robots", "diagnose", "sample_states"),
         "errors": ("InputError", "RttrrError"),
         "exact": ("Enclosures",),
         "implementations": ("Batch", "Evaluation", "Implementation"),

@@ -25,6 +25,7 @@ COMMANDS = {
     "state": "rttrr_pin.validation.command:state",
     "search": "rttrr_pin.validation.command:search",
     "sample": "rttrr_pin.diagnosis.sample_command:sample",
+    "diagnose": "rttrr_pin.diagnosis.command:diagnose",
     "laws": "rttrr_pin.laws.command:laws",
     "compare": "rttrr_pin.diagnosis.compare_command:compare",
     "audit": "rttrr_pin.auditing.command:audit",

@@ -10,10 +10,10 @@ import numpy as np
 
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.wrench import QUANTITIES
-from rttrr_pin.diagnosis.diagnose import hypotheses_of
 from rttrr_pin.diagnosis.evidence import Evidence, flat, screened, spread
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.predictions import Raw, applied, predicted, raw_changes
+from rttrr_pin.diagnosis.run import hypotheses_of
 from rttrr_pin.diagnosis.search import Explanation, Search
 from rttrr_pin.diagnosis.states import sample_states
 from rttrr_pin.diagnosis.variant import Variant
@@ -65,7 +65,9 @@ class Bench:
         self.hypotheses = hypotheses_of(self.model)
         rounding = spread(default_allowance(self.batch), QUANTITIES)
         keep = np.cumsum([0] + [x.reshape(len(x), -1).shape[1] for x in self.base.evaluate(self.batch).values()])
-        chosen = np.concatenate([np.arange(keep[QUANTITIES.index(k)], keep[QUANTITIES.index(k) + 1]) for k in quantities])
+        chosen = np.concatenate(
+            [np.arange(keep[QUANTITIES.index(k)], keep[QUANTITIES.index(k) + 1]) for k in quantities]
+        )
         self.rounding = rounding[:, chosen]
         self.expected = flat(self.base.evaluate(self.batch), quantities)
 
@@ -96,9 +98,7 @@ class Bench:
         """Plant faults, and look whether they are named."""
         return self.judged_values(self.values(faults, rng), faults)
 
-    def judged_values(
-        self, values: np.ndarray, faults: Sequence[Fault], tolerance: np.ndarray | None = None
-    ) -> Judged:
+    def judged_values(self, values: np.ndarray, faults: Sequence[Fault], tolerance: np.ndarray | None = None) -> Judged:
         """The same for results that are there already."""
         evidence = self.evidence(values, tolerance)
         ratio = float(evidence.of_tolerance(self.expected).max())

@@ -15,7 +15,9 @@ from rttrr_pin.validation.options import RunOptions, conditions, payload
 
 @click.command
 @robot()
-@click.argument("results", required=False, help="A table of results (.csv, .parquet, .jsonl), or a log with a column time.")
+@click.argument(
+    "results", required=False, help="A table of results (.csv, .parquet, .jsonl), or a log with a column time."
+)
 @click.option(
     "--subject",
     metavar="PROGRAM",
@@ -36,9 +38,7 @@ def diagnose(
 
     Exit code: 0 agrees, 1 differs, 2 unusable input.
     """
-    from rttrr_pin.diagnosis.diagnose import diagnose as find
-    from rttrr_pin.diagnosis.log import diagnose_log, is_log
-    from rttrr_pin.diagnosis.log_report import show_log
+    from rttrr_pin.diagnosis.run import diagnose as find
 
     if (results is None) == (subject is None):
         raise InputError("name a table of results or a --subject, one of the two: rttrr-pin diagnose ROBOT results.csv")
@@ -47,11 +47,6 @@ def diagnose(
     options = RunOptions(**(run | {"subject": chosen, "reference": (run["reference"],)}))
     loaded = options.load(json)
     console = Output(quiet=quiet or json == "-")
-    if results is not None and is_log(results, loaded.model):
-        log = diagnose_log(loaded, results)
-        write_json(json, log.to_dict)
-        show_log(log, console)
-        return AGREE if log.passed else DISAGREE
     what = options.chosen()
     [reference] = what.pop("reference")
     with progress(1000, quiet, "hypotheses") as advance:

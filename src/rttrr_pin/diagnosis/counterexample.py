@@ -26,7 +26,7 @@ Seen = tuple[Array, Array, Array]
 """The subject's values, those of the reference, and error / tolerance, (N, numbers) each."""
 
 
-def counterexample(robot: object, programs: Sequence[Implementation], evidence: Evidence) -> str:
+def counterexample(programs: Sequence[Implementation], evidence: Evidence) -> str:
     """Python code of a test, whose expected value is proven; empty where no state without payload differs."""
     batch = evidence.batch
     ratios = evidence.of_tolerance(evidence.expected)
@@ -57,7 +57,8 @@ def _bare(batch: Batch) -> Batch:
 def _seen(programs: Sequence[Implementation], batch: Batch, quantities: Sequence[str]) -> Seen:
     results = [with_allowance(batch, evaluated(one, batch)) for one in programs]
     x, y = (flat(dict(one.values), quantities) for one in results)
-    allowed = sum(spread(dict(one.allowance or {}), quantities) for one in results)
+    first, second = (spread(dict(one.allowance or {}), quantities) for one in results)
+    allowed = first + second
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio = np.where(x == y, 0.0, np.abs(x - y) / allowed)
     return x, y, np.where(np.isnan(ratio), np.inf, ratio)
@@ -90,18 +91,20 @@ def _simplest(state: Batch, ask: Callable[[Batch], Seen]) -> Batch:
         return options
 
     steps += [whole(name) for name in "vaq"]
-    steps += [entry(name, k) for name in "vaq" for k in range(getattr(state, name).shape[1]) if name != "q" or k not in fixed]
+    steps += [
+        entry(name, k) for name in "vaq" for k in range(getattr(state, name).shape[1]) if name != "q" or k not in fixed
+    ]
     own = {name: getattr(state, name) for name in "qva"}
     for step in steps:
         options = step(own)
         if not options:
             continue
-        stacked = {name: np.concatenate([one[name] for one in options]) for name in "qva"}
-        ratios = ask(Batch(model, **stacked))[2].max(axis=1)
+        q, v, a = (np.concatenate([one[name] for one in options]) for name in "qva")
+        ratios = ask(Batch(model, q, v, a))[2].max(axis=1)
         good = np.flatnonzero(ratios >= least)
         if len(good):
             own = options[int(good[0])]
-    return Batch(model, **own)
+    return Batch(model, own["q"], own["v"], own["a"])
 
 
 def _as_test(state: Batch, labels: Sequence[tuple[str, str]], k: int, got: float) -> str:

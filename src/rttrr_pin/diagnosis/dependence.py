@@ -44,7 +44,7 @@ def dependence(programs: Sequence[Implementation], evidence: Evidence) -> tuple[
 
 def _where(evidence: Evidence) -> str:
     """The joints and links at which the programs differ."""
-    bad = (evidence.of_tolerance(evidence.expected) > 1.0).any(axis=0)
+    bad = evidence.of_tolerance(evidence.expected).max(axis=0) > 1.0
     labels = places(evidence.batch.model, evidence.quantities)
     differing = list(dict.fromkeys(place for place, own in zip(labels, bad, strict=True) if own))
     agreeing = [place for place in dict.fromkeys(labels) if place not in differing]
@@ -63,7 +63,8 @@ def _differences(programs: Sequence[Implementation], quantities: Sequence[str]) 
     def ask(batch: Batch) -> tuple[Array, Array]:
         results = [with_allowance(batch, evaluated(one, batch)) for one in programs]
         x, y = (flat(dict(one.values), quantities) for one in results)
-        return x - y, sum(spread(dict(one.allowance or {}), quantities) for one in results)
+        first, second = (spread(dict(one.allowance or {}), quantities) for one in results)
+        return x - y, first + second
 
     return ask
 
@@ -98,7 +99,9 @@ def _asked(ask: Differences, evidence: Evidence) -> list[str]:
         if _clear(moved[0] - whole[0], moved[1] + whole[1]):
             moving.append(name)
     if model.nq == model.nv:
-        lines.append(f"it changes with the coordinate of {_listed(moving)}" if moving else "it changes with no coordinate")
+        lines.append(
+            f"it changes with the coordinate of {_listed(moving)}" if moving else "it changes with no coordinate"
+        )
     if loads:
         loaded = ask(Batch(model, q, v, a, loads[:1]))
         changes = _clear(loaded[0] - whole[0], loaded[1] + whole[1])
@@ -134,7 +137,7 @@ def _of_accelerations(
 
 def _of_rows(evidence: Evidence) -> list[str]:
     """What the rows of a table tell."""
-    batch, bad = evidence.batch, (evidence.of_tolerance(evidence.expected) > 1.0).any(axis=1)
+    batch, bad = evidence.batch, evidence.of_tolerance(evidence.expected).max(axis=1) > 1.0
     v, a = ((getattr(batch, name) != 0.0).any(axis=1) for name in "va")
     with_load = loaded(batch)
     kinds = {
@@ -144,7 +147,11 @@ def _of_rows(evidence: Evidence) -> list[str]:
         "with both": v & a & ~with_load,
         "with a payload": with_load,
     }
-    lines = [f"{int(bad[rows].sum())} of {int(rows.sum())} states {kind} differ" for kind, rows in kinds.items() if rows.any()]
+    lines = [
+        f"{int(bad[rows].sum())} of {int(rows.sum())} states {kind} differ"
+        for kind, rows in kinds.items()
+        if rows.any()
+    ]
     missing = [kind for kind, rows in kinds.items() if not rows.any()]
     if missing:
         lines.append(f"the table has no states {' or '.join(missing)}: rttrr-pin sample writes some of each kind")

@@ -94,7 +94,9 @@ def joined(batches: Sequence[Batch]) -> Batch:
     loads = []
     for group in zip(*(own.loads for own in batches), strict=True):
         f, n = (
-            np.concatenate([np.broadcast_to(getattr(x, name), (len(b), 3)) for x, b in zip(group, batches, strict=True)])
+            np.concatenate(
+                [np.broadcast_to(getattr(x, name), (len(b), 3)) for x, b in zip(group, batches, strict=True)]
+            )
             for name in "fn"
         )
         loads.append(Load(group[0].link, f, n, group[0].in_base))

@@ -15,7 +15,7 @@ from rttrr_pin.diagnosis.results import Cause, Diagnosis, Residual
 SHOWN = 8
 """Rows, or alternatives, that are shown unless all are asked for."""
 
-VERDICTS = {"agrees": ("AGREES", "bold green"), "explained": ("EXPLAINED", "bold yellow"), "unexplained": ("UNEXPLAINED", "bold red")}
+STYLES = {"agrees": "bold green", "explained": "bold yellow", "unexplained": "bold red"}
 
 
 def show_diagnosis(result: Diagnosis, console: Console, full: bool = False) -> None:
@@ -26,8 +26,7 @@ def show_diagnosis(result: Diagnosis, console: Console, full: bool = False) -> N
         console.print(Text(note, "dim"), soft_wrap=True)
     if not result.passed:
         console.print(_table(result, full))
-    word, style = VERDICTS[result.verdict]
-    console.print(Text(word, style), Text(_sentence(result)), soft_wrap=True)
+    console.print(Text(result.verdict.upper(), STYLES[result.verdict]), Text(_sentence(result)), soft_wrap=True)
     for number, cause in enumerate(result.causes, 1):
         _show_cause(cause, f"{number}. " if len(result.causes) > 1 else "", console, full)
     for k, other in enumerate(result.others[: None if full else 3]):
@@ -79,16 +78,14 @@ def _show_cause(cause: Cause, number: str, console: Console, full: bool) -> None
 
 
 def _sentence(result: Diagnosis) -> str:
-    compared = f"{result.residual_before:.2g} times what rounding explains"
+    seconds = f"({result.seconds:.1f} s)"
     if result.passed:
-        return f"all differences are rounding ({result.seconds:.1f} s)"
+        return f"all differences are rounding {seconds}"
+    before = f"the largest difference is {result.residual_before:.2g} times what rounding explains"
     if result.verdict == "explained":
         count = "one cause" if len(result.causes) == 1 else f"{len(result.causes)} causes"
-        return f"by {count}: the largest difference, {compared}, becomes {result.residual_after:.2g} ({result.seconds:.1f} s)"
-    return (
-        f"the largest difference is {compared}, and no set of the {result.tried:,} hypotheses that were tried brings it "
-        f"down to that ({result.seconds:.1f} s)"
-    )
+        return f"by {count}: {before}, and {result.residual_after:.2g} with that {seconds}"
+    return f"{before}, and no set of the {result.tried:,} hypotheses that were tried explains it {seconds}"
 
 
 def _table(result: Diagnosis, full: bool) -> Table:

@@ -1,9 +1,9 @@
 """The smallest set of hypotheses that brings a difference down to what rounding explains.
 
 Single hypotheses first, all of them, then pairs, then sets that grow by one. Changes that two hypotheses make are
-nearly always additive, so that pairs are ranked by sums of their changes; where they are not (degrees for radians beside
-a wrong mass), one hypothesis is tried on top of the other. What ranks first is then computed as it is, and only what
-lies within the tolerance in every state is an explanation.
+nearly always additive, so that pairs are ranked by sums of their changes; where they are not (degrees for radians
+beside a wrong mass), one hypothesis is tried on top of the other. What ranks first is then computed as it is, and only
+what lies within the tolerance in every state is an explanation.
 """
 
 from __future__ import annotations
@@ -11,14 +11,22 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from itertools import islice
-from itertools import pairwise
 
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.diagnosis.evidence import Evidence, screened, with_worst
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
-from rttrr_pin.diagnosis.predictions import Change, Raw, Stack, applied, jacobian, predicted, raw_changes, visible_changes
+from rttrr_pin.diagnosis.predictions import (
+    Change,
+    Raw,
+    Stack,
+    applied,
+    jacobian,
+    predicted,
+    raw_changes,
+    visible_changes,
+)
 from rttrr_pin.diagnosis.variant import Variant
 
 CONFIRMED = 40
@@ -127,7 +135,9 @@ class Search:
             rows, self.raw = with_worst(rows, ratios), None
         self.sample = part = evidence.part(rows)
         self.tried, self.ranked = 0, list[Candidate]()
-        seen, allowed, usual = (np.sqrt(np.mean(x**2, axis=0)) for x in (part.difference, part.tolerance, part.expected))
+        seen, allowed, usual = (
+            np.sqrt(np.mean(x**2, axis=0)) for x in (part.difference, part.tolerance, part.expected)
+        )
         scale = np.maximum(np.maximum(seen, allowed), FLOOR * usual)
         self.scale = np.broadcast_to(np.where(scale > 0.0, scale, 1.0), part.values.shape)
         self.target = (part.difference / self.scale).ravel()
@@ -274,7 +284,7 @@ class Search:
     def fit(
         self, hypotheses: tuple[Hypothesis, ...], evidence: Evidence, start: Sequence[float] | None = None
     ) -> Explanation:
-        """Fit the numbers of a set by Gauss-Newton, each equation divided by its tolerance; then round them if one may."""
+        """Fit the numbers of a set by Gauss-Newton, each equation over its tolerance; round them where one may."""
         neutral = [x for own in hypotheses for x in own.neutral]
         towards = [x for own in hypotheses for x in own.start]
         numbers = [*(neutral if start is None else start)]

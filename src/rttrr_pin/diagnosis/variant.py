@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import split_columns
@@ -78,7 +78,7 @@ def run(model: Model, batch: Batch, mutations: Sequence[Mutation] = ()) -> Value
     q, v, a = (columns(x) for x in (batch.q, batch.v, batch.a))
     with np.errstate(all="ignore"):
         result: Result = compute(model, FLOAT, q, v, a, payloads_of(batch.loads, FLOAT))
-        numbers: list[ArrayLike] = result.scalars()
+        numbers: list[Any] = result.scalars()
         table = np.empty((rows, len(numbers)))
         for column, x in zip(table.T, numbers, strict=True):
             column[:] = x

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
@@ -22,7 +23,7 @@ from rttrr_pin.diagnosis.mechanics import mechanics
 from rttrr_pin.diagnosis.parameters import parameters
 from rttrr_pin.diagnosis.placements import placements
 from rttrr_pin.diagnosis.predictions import applied, predicted
-from rttrr_pin.diagnosis.results import Cause, Diagnosis, NearMiss, Residual, Verdict
+from rttrr_pin.diagnosis.results import Cause, Diagnosis, NearMiss, Residual
 from rttrr_pin.diagnosis.search import Explanation, Progress, Search
 from rttrr_pin.diagnosis.states import sample_states
 from rttrr_pin.diagnosis.variant import Variant
@@ -77,7 +78,7 @@ def diagnose(
     programs = [make_implementation(source, model) for source in (subject, reference)]
     batch, sampling = _states(robot, programs, n_states, seed, payload)
     with np.errstate(over="ignore", invalid="ignore"):
-        return _diagnosed(robot, programs, batch, sampling, progress, begin)
+        return _diagnosed(programs, batch, sampling, progress, begin)
 
 
 def hypotheses_of(model: Model) -> list[Hypothesis]:
@@ -91,22 +92,17 @@ def _states(
     """Those of a table among the programs; else telling ones."""
     tables = [one.states() for one in programs if hasattr(one, "states")]
     if not tables:
-        random = payload if isinstance(payload, RandomPayload) else None
-        states = sample_states(robot, n_states, seed, random).states
-        fixed = () if payload is None or random is not None else (load_of(states.model, payload),)
-        return replace(states, loads=states.loads or fixed), "telling"
+        if payload is None or isinstance(payload, RandomPayload):
+            return sample_states(robot, n_states, seed, payload).states, "telling"
+        states = sample_states(robot, n_states, seed, None).states
+        return replace(states, loads=(load_of(states.model, payload),)), "telling"
     if len(tables) > 1 and not all(np.array_equal(getattr(tables[0], x), getattr(tables[1], x)) for x in "qva"):
         raise InputError(f"{programs[0].name} and {programs[1].name} are of different states: diagnose them one by one")
     return tables[0], "table"
 
 
 def _diagnosed(
-    robot: Robot,
-    programs: Sequence[Implementation],
-    batch: Batch,
-    sampling: str,
-    progress: Progress | None,
-    begin: float,
+    programs: Sequence[Implementation], batch: Batch, sampling: str, progress: Progress | None, begin: float
 ) -> Diagnosis:
     """The diagnosis of two programs at these states."""
     model = batch.model
@@ -116,101 +112,127 @@ def _diagnosed(
     results = [with_allowance(batch, evaluated(one, batch)) for one in programs]
     kept, notes = _finite_states(programs, results, shared)
     batch, results = part_of(batch, kept), [_part(one, kept) for one in results]
-    rounding = spread(default_allowance(batch), QUANTITIES)
-    expected = flat(dict(batch.recursion[0].items()), QUANTITIES)
-    evidence = [_evidence(batch, one, shared, expected, rounding) for one in results]
-    of_both = Evidence(
-        batch, shared, evidence[0].values, evidence[1].values, evidence[0].tolerance + evidence[1].tolerance,
-        np.zeros_like(evidence[0].rounding),
-    )
-    before = of_both.of_tolerance(of_both.expected)
-    verdict: Verdict = "agrees"
-    causes: list[Cause] = []
-    others: list[tuple[Cause, ...]] = []
-    near: list[NearMiss] = []
-    after, tried, left = of_both.difference, 0, before
-    lines: tuple[str, ...] = ()
-    example = ""
+    evidence = _evidence(batch, results, shared)
+    both = _between(*evidence)
+    before = both.of_tolerance(both.expected)
+    found = _Found()
     if (before > 1.0).any():
-        verdict = "explained"
-        base, hypotheses = Variant(model), hypotheses_of(model)
-        explained = [one.expected for one in evidence]
-        for k, (program, own) in enumerate(zip(programs, evidence, strict=True)):
-            if (own.of_tolerance(own.expected) <= 1.0).all():
-                continue
-            search = Search(own, base, hypotheses, progress)
-            first, *rest = search.run() or [Explanation((), (), np.inf, 1.0)]
-            tried += search.tried
-            if not first.explains:
-                verdict = "unexplained"
-                near += _near_misses(search, program)
-                continue
-            causes += _causes(first, program)
-            others += [tuple(_causes(one, program)) for one in rest[:OTHERS]]
-            explained[k] = predicted(applied(base, first.hypotheses, first.numbers), own)
-        if verdict == "explained" and not causes:
-            verdict = "unexplained"
-        if verdict == "explained":
-            after = (evidence[0].values - explained[0]) - (evidence[1].values - explained[1])
-            both = sum(one.tolerance + one.rounding for one in evidence)
-            left = np.abs(after) / both
-        else:
-            causes, others = [], []
-            lines = dependence(programs, of_both)
-        example = counterexample(robot, programs, of_both)
+        found = _explained(programs, evidence, progress)
+        found.dependence = () if found.causes else dependence(programs, both)
+    after = both.difference - (found.changes if found.causes else 0.0)
+    left = np.abs(after) / (both.tolerance + both.rounding) if found.causes else before
     return Diagnosis(
-        robot=robot.name,
+        robot=model.name,
         subject=label(programs[0]),
         reference=label(programs[1]),
-        verdict=verdict,
-        causes=tuple(causes),
-        others=tuple(others),
-        residuals=_residuals(of_both, after, before, left),
+        verdict="agrees" if (before <= 1.0).all() else "explained" if found.causes else "unexplained",
+        causes=tuple(found.causes),
+        others=tuple(found.others),
+        residuals=_residuals(both, after, before, left),
         residual_before=float(before.max(initial=0.0)),
         residual_after=float(left.max(initial=0.0)),
-        dependence=lines,
-        near_misses=tuple(near[:NEAR_MISSES]),
-        counterexample=example,
+        dependence=found.dependence,
+        near_misses=tuple(sorted(found.near, key=lambda near: -near.explains)[:NEAR_MISSES]),
+        counterexample=counterexample(programs, both) if (before > 1.0).any() else "",
         n_states=len(batch),
         sampling=sampling,
-        tried=tried,
-        notes=(*(note.text for note in model.notes), *(x for one in programs for x in getattr(one, "notes", ())), *notes),
+        tried=found.tried,
+        notes=(*(own.text for own in model.notes), *(x for one in programs for x in getattr(one, "notes", ())), *notes),
         seconds=time.perf_counter() - begin,
     )
 
 
-def _evidence(
-    batch: Batch, result: Evaluation, quantities: tuple[str, ...], expected: Array, rounding: Array
-) -> Evidence:
-    every = places(batch.model, QUANTITIES)
-    own = np.array([key in quantities for key, _ in every], dtype=bool)
-    return Evidence(
-        batch,
-        quantities,
-        flat(dict(result.values), quantities),
-        expected[:, own],
-        spread(dict(result.allowance or {}), quantities),
-        rounding[:, own],
+@dataclass(slots=True)
+class _Found:
+    """What the searches came to.
+
+    Attributes:
+        causes: of both programs; none where what one of them does is unexplained.
+        others: other sets.
+        near: what comes nearest.
+        changes: of the difference, by the causes.
+        tried: hypotheses.
+        dependence: what the difference depends on.
+    """
+
+    causes: list[Cause] = field(default_factory=list)
+    others: list[tuple[Cause, ...]] = field(default_factory=list)
+    near: list[NearMiss] = field(default_factory=list)
+    changes: Array | float = 0.0
+    tried: int = 0
+    dependence: tuple[str, ...] = ()
+
+
+def _explained(programs: Sequence[Implementation], evidence: Sequence[Evidence], progress: Progress | None) -> _Found:
+    """Each program against the recursion, where it differs from it."""
+    model = evidence[0].batch.model
+    base, hypotheses = Variant(model), hypotheses_of(model)
+    found, unexplained = _Found(), False
+    for sign, program, own in zip((1.0, -1.0), programs, evidence, strict=True):
+        if (own.of_tolerance(own.expected) <= 1.0).all():
+            continue
+        search = Search(own, base, hypotheses, progress)
+        explanations = search.run()
+        found.tried += search.tried
+        if not explanations or not explanations[0].explains:
+            unexplained = True
+            found.near += _near_misses(search, explanations, program)
+            continue
+        first, *rest = explanations
+        found.causes += _causes(first, program)
+        found.others += [tuple(_causes(one, program)) for one in rest[:OTHERS]]
+        found.changes += sign * (predicted(applied(base, first.hypotheses, first.numbers), own) - own.expected)
+    if unexplained:
+        found.causes, found.others = [], []
+    return found
+
+
+def _evidence(batch: Batch, results: Sequence[Evaluation], quantities: tuple[str, ...]) -> list[Evidence]:
+    """Each program beside the recursion."""
+    expected = flat(dict(batch.recursion[0].items()), quantities)
+    rounding = spread(default_allowance(batch), quantities)
+    return [
+        Evidence(
+            batch,
+            quantities,
+            flat(dict(one.values), quantities),
+            expected,
+            spread(dict(one.allowance or {}), quantities),
+            rounding,
+        )
+        for one in results
+    ]
+
+
+def _between(subject: Evidence, reference: Evidence) -> Evidence:
+    """One program beside the other, without any line of the recursion."""
+    return replace(
+        subject,
+        expected=reference.values,
+        tolerance=subject.tolerance + reference.tolerance,
+        rounding=np.zeros_like(subject.rounding),
     )
 
 
 def _finite_states(
     programs: Sequence[Implementation], results: Sequence[Evaluation], quantities: Sequence[str]
-) -> tuple[Array, list[str]]:
+) -> tuple[NDArray[np.int64], list[str]]:
     """The states in which all results are numbers; and what is to be said of the others."""
     finite = [np.isfinite(flat(dict(one.values), quantities)).all(axis=1) for one in results]
     notes = []
     for program, own in zip(programs, finite, strict=True):
         if not own.all():
             first = int(np.argmin(own))
-            notes.append(f"{program.name} has no number in {int((~own).sum())} states, first {first}: these are left out")
+            notes.append(
+                f"{program.name} has no number in {int((~own).sum())} states, first {first}: these are left out"
+            )
     kept = np.flatnonzero(np.logical_and.reduce(finite))
     if not len(kept):
         raise InputError(f"no state has numbers of both programs: {'; '.join(notes)}")
     return kept, notes
 
 
-def _part(result: Evaluation, rows: Array) -> Evaluation:
+def _part(result: Evaluation, rows: NDArray[np.int64]) -> Evaluation:
     values, allowance = (
         {key: x[rows] for key, x in (arrays or {}).items()} for arrays in (result.values, result.allowance)
     )
@@ -235,13 +257,11 @@ def _cause(own: Hypothesis, numbers: Sequence[float], program: Implementation) -
     )
 
 
-def _near_misses(search: Search, program: Implementation) -> list[NearMiss]:
-    found = []
-    for left, own in search.ranked:
-        explains = 1.0 - left**2
-        if explains >= LEAST:
-            found.append(NearMiss(f"{program.name}: {own[0].hypothesis.sentence}", explains))
-    return found
+def _near_misses(search: Search, sets: Sequence[Explanation], program: Implementation) -> list[NearMiss]:
+    """The single hypotheses, and the sets, that explain most."""
+    found = [(1.0 - left**2, [own[0].hypothesis.sentence]) for left, own in search.ranked[:NEAR_MISSES]]
+    found += [(1.0 - one.left**2, [own.sentence for own in one.hypotheses]) for one in sets[:1] if one.hypotheses[1:]]
+    return [NearMiss(f"{program.name}: {'; '.join(words)}", share) for share, words in found if share >= LEAST]
 
 
 def _residuals(evidence: Evidence, after: Array, before_ratio: Array, after_ratio: Array) -> tuple[Residual, ...]:
