@@ -11,7 +11,6 @@ if TYPE_CHECKING:
     from rttrr_pin.diagnosis.compare import compare_robots as compare_robots
     from rttrr_pin.diagnosis.difference import Difference as Difference
     from rttrr_pin.diagnosis.effects_of import Effect as Effect
-<<<<<<< HEAD
     from rttrr_pin.diagnosis.log import Log as Log
     from rttrr_pin.diagnosis.log import is_log as is_log
     from rttrr_pin.diagnosis.log import read_log as read_log
@@ -19,13 +18,11 @@ if TYPE_CHECKING:
     from rttrr_pin.diagnosis.log_diagnosis import LogCause as LogCause
     from rttrr_pin.diagnosis.log_diagnosis import LogDiagnosis as LogDiagnosis
     from rttrr_pin.diagnosis.log_diagnosis import diagnose_log as diagnose_log
-=======
     from rttrr_pin.diagnosis.results import Cause as Cause
     from rttrr_pin.diagnosis.results import Diagnosis as Diagnosis
     from rttrr_pin.diagnosis.results import NearMiss as NearMiss
     from rttrr_pin.diagnosis.results import Residual as Residual
     from rttrr_pin.diagnosis.run import diagnose as diagnose
->>>>>>> f5b9a6d (rttrr-pin diagnose: causes with their repairs, differences before and after, a test to paste)
     from rttrr_pin.diagnosis.states import Sample as Sample
     from rttrr_pin.diagnosis.states import sample_states as sample_states
 
@@ -36,12 +33,9 @@ __getattr__, __dir__, __all__ = lazy(
         "run": ("diagnose",),
         "difference": ("Difference",),
         "effects_of": ("Effect",),
-<<<<<<< HEAD
         "log": ("Log", "is_log", "read_log"),
         "log_diagnosis": ("JointResidual", "LogCause", "LogDiagnosis", "diagnose_log"),
-=======
         "results": ("Cause", "Diagnosis", "NearMiss", "Residual"),
->>>>>>> f5b9a6d (rttrr-pin diagnose: causes with their repairs, differences before and after, a test to paste)
         "states": ("Sample", "sample_states"),
     },
 )
