@@ -10,6 +10,7 @@ from rttrr_pin.diagnosis.report import show_diagnosis
 from rttrr_pin.errors import InputError
 from rttrr_pin.reporting.options import flag, outcome, robot, seed
 from rttrr_pin.reporting.output import AGREE, DISAGREE, Output, progress, write_json
+from rttrr_pin.robot import Robot
 from rttrr_pin.validation.options import RunOptions, conditions, payload
 
 
@@ -38,6 +39,7 @@ def diagnose(
 
     Exit code: 0 agrees, 1 differs, 2 unusable input.
     """
+    from rttrr_pin.diagnosis.log import is_log
     from rttrr_pin.diagnosis.run import diagnose as find
 
     if (results is None) == (subject is None):
@@ -47,6 +49,8 @@ def diagnose(
     options = RunOptions(**(run | {"subject": chosen, "reference": (run["reference"],)}))
     loaded = options.load(json)
     console = Output(quiet=quiet or json == "-")
+    if results is not None and is_log(results, loaded.model):
+        return _of_log(loaded, results, console, json)
     what = options.chosen()
     [reference] = what.pop("reference")
     with progress(1000, quiet, "hypotheses") as advance:
@@ -54,3 +58,14 @@ def diagnose(
     write_json(json, result.to_dict)
     show_diagnosis(result, console, full)
     return AGREE if result.passed else DISAGREE
+
+
+def _of_log(robot: Robot, path: str, console: Output, json: str | None) -> int:
+    """What a real robot's torques differ by."""
+    from rttrr_pin.diagnosis.log_diagnosis import diagnose_log
+    from rttrr_pin.diagnosis.log_report import show_log
+
+    report = diagnose_log(robot, path)
+    write_json(json, report.to_dict)
+    show_log(report, console)
+    return AGREE if report.passed else DISAGREE
