@@ -192,5 +192,8 @@ class _Search:
 
 def _span(A: Array) -> Array:
     """An orthonormal basis of columns of length 1 or less."""
+    if A.shape[1] == 1:  # most groups, and a decomposition costs milliseconds
+        size = float(np.linalg.norm(A))
+        return np.asarray(A / size if size > DEPENDENT else A[:, :0])
     U, sigma, _ = np.linalg.svd(A, full_matrices=False)
     return np.asarray(U[:, sigma > DEPENDENT])
