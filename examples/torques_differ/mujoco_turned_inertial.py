@@ -2,8 +2,8 @@
 
     pip install mujoco==3.13.0
 
-Threads: google-deepmind/mujoco#3559, mended by #3560. Seven digits are written: MuJoCo before 3.14 finds principal axes
-to about nine.
+Threads: google-deepmind/mujoco#3559, mended by #3560. Six decimals are written: MuJoCo before 3.14 finds principal axes
+to about nine digits.
 """
 
 from __future__ import annotations
@@ -31,4 +31,4 @@ def torques(file: str, states: States) -> dict[str, Array]:
 
 
 if __name__ == "__main__":
-    main(torques, digits=7)
+    main(torques, form=".6f")

@@ -18,7 +18,7 @@ Torques = Callable[[str, States], dict[str, Array]]
 """From the file of the robot and the states to the torques, by joint."""
 
 
-def main(torques: Torques, digits: int = 17) -> None:
+def main(torques: Torques, form: str = ".17g") -> None:
     """Add `tau_` columns to a table: `python program.py ROBOT STATES RESULTS`."""
     robot, source, target = sys.argv[1:]
     with Path(source).open(newline="") as file:
@@ -30,4 +30,4 @@ def main(torques: Torques, digits: int = 17) -> None:
     with Path(target).open("w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow([*header, *(f"tau_{joint}" for joint in tau)])
-        writer.writerows([*row, *(f"{x:.{digits}g}" for x in own)] for row, own in zip(rows, results, strict=True))
+        writer.writerows([*row, *(f"{x:{form}}" for x in own)] for row, own in zip(rows, results, strict=True))

@@ -13,6 +13,7 @@ import inspect
 import json
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -47,13 +48,16 @@ PROGRAMS = [page for page in PAGES if page == README or ("python" in dict(blocks
 
 @pytest.fixture
 def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The files that the documents call the reader's own: the bundled arm, one with a comma in a mass, one that differs."""
+    """The files that the documents call the reader's own: the bundled arm, one with a comma in a mass, one that differs; and the results
+    of other programs on small robots.
+    """
     text = bundled()["rttrr"].read_text()
     (tmp_path / "my_arm.urdf").write_text(text)
     (tmp_path / "bad_arm.urdf").write_text(re.sub(r'<mass value="(\d+)\.', r'<mass value="\1,', text, count=1))
     other = text.replace('value="3.75387"', 'value="3.9"').replace('ixy="-5.97049e-05"', 'ixy="5.97049e-05"')
     other = other.replace('upper="0.32"', 'upper="0.3"').replace("joint_5", "wrist")
     (tmp_path / "other_arm.urdf").write_text(other)
+    shutil.copytree(ROOT / "tests/data/torques_differ", tmp_path, dirs_exist_ok=True)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "80")
     return tmp_path

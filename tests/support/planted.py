@@ -58,7 +58,7 @@ def with_gravity(urdf: str, gravity: tuple[float, float, float]) -> Program:
 
 
 def masses_in_grams(urdf: str) -> Program:
-    """Masses of a file in kg taken for g, or the other way round; tensors stay."""
+    """Masses of a file in g taken for kg; tensors about centres of mass stay. Of a robot without fixed links."""
     own = model(urdf)
     for body in own.inertias:
         body.mass *= 1e3

@@ -19,6 +19,7 @@ from rttrr_pin.diagnosis.dependence import dependence
 from rttrr_pin.diagnosis.evidence import Evidence, flat, part_of, places, spread
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.joints import joints
+from rttrr_pin.diagnosis.levers import levers
 from rttrr_pin.diagnosis.mechanics import mechanics
 from rttrr_pin.diagnosis.parameters import parameters
 from rttrr_pin.diagnosis.placements import placements
@@ -42,7 +43,7 @@ NEAR_MISSES, LEAST = 5, 0.1
 OTHERS = 10
 """Other sets that are told."""
 
-CATALOGUES = (conventions, parameters, placements, joints, mechanics)
+CATALOGUES = (conventions, parameters, placements, joints, mechanics, levers)
 
 
 def diagnose(
