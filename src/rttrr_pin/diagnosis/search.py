@@ -17,6 +17,7 @@ import numpy as np
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.diagnosis.evidence import Evidence, screened, with_worst
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
+from rttrr_pin.diagnosis.minimax import minimax
 from rttrr_pin.diagnosis.predictions import (
     Change,
     Raw,
@@ -34,6 +35,9 @@ CONFIRMED = 40
 
 NEAR = 0.5
 """A set is computed only if it leaves less than this part of the difference."""
+
+CLOSE = 4.0
+"""A fit whose largest error is less than so many times what rounding explains is fitted in the largest error too."""
 
 OUTER = 6
 """On top of so many of the best hypotheses all others are tried."""
@@ -305,7 +309,19 @@ class Search:
             best = min(after, best, key=lambda own: (own.left, own.worst)) if k else after
             if best.explains or stuck:
                 break
+        if numbers and 1.0 < best.worst < CLOSE:
+            best = min(best, self._closer(best, evidence), key=lambda own: own.worst)
         return self._rounded(best, evidence) if best.explains and numbers else best
+
+    def _closer(self, own: Explanation, evidence: Evidence) -> Explanation:
+        """The same fitted in the largest error."""
+        base = predicted(applied(self.base, own.hypotheses, own.numbers), evidence)
+        J = jacobian(self.base, own.hypotheses, own.numbers, own.numbers, evidence, base)
+        bound = np.maximum(evidence.tolerance + evidence.rounding, np.finfo(float).tiny)
+        step = minimax(J, (evidence.values - base).ravel(), bound.ravel())
+        if step is None:
+            return own
+        return self._judged(own.hypotheses, [x + float(dx) for x, dx in zip(own.numbers, step, strict=True)], evidence)
 
     def _rounded(self, own: Explanation, evidence: Evidence) -> Explanation:
         """The same with numbers of few digits, where they explain it as well."""
