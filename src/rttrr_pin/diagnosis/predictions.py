@@ -19,6 +19,9 @@ from rttrr_pin.implementations.protocol import Batch
 TENSORS = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))
 """The entries of a tensor in the order of the parameters."""
 
+MARKED = 1e-6
+"""Relative: only changes whose projections on one random direction are as near are compared number by number."""
+
 ALIKE = 1e-9
 """Relative: changes no farther apart are of hypotheses that these states cannot tell apart."""
 
@@ -145,18 +148,17 @@ def _of_bodies(model: Model, batch: Batch, mutations: Sequence[Mutation]) -> Ite
 def _distinct(found: list[Change]) -> list[Change]:
     """One for all that change the same; with a fitted number, that change it in the same direction."""
     kept: list[Change] = []
-    by_size: dict[tuple[int, int], list[int]] = {}
-    mixed = np.random.default_rng(0)
+    marked: dict[tuple[int, int, int], list[int]] = {}
+    rng = np.random.default_rng(0)
     weights: dict[int, Array] = {}
     for own in found:
         direction = own.change.ravel() / (np.linalg.norm(own.change) if own.fitted == 1 else 1.0)
-        weight = weights.setdefault(direction.size, mixed.standard_normal(direction.size))
-        mark = float(abs(direction @ weight))
-        key = (own.fitted, math.frexp(mark)[1])
-        near = [k for e in (-1, 0, 1) for k in by_size.get((key[0], key[1] + e), [])]
+        weight = weights.setdefault(direction.size, rng.standard_normal(direction.size))
+        mark = round(math.log(abs(float(direction @ weight)) + np.finfo(float).tiny) / MARKED)
+        near = [k for step in (-1, 0, 1) for k in marked.get((own.fitted, direction.size, mark + step), ())]
         same = next((k for k in near if _same(direction, kept[k])), None)
         if same is None:
-            by_size.setdefault(key, []).append(len(kept))
+            marked.setdefault((own.fitted, direction.size, mark), []).append(len(kept))
             kept.append(own)
         else:
             kept[same] = replace(kept[same], alike=(*kept[same].alike, own.hypothesis))
