@@ -37,6 +37,10 @@ def bench_robot(seed: int) -> Robot:
     return load(random_tree(seed, 3 + seed % 3, types), base=base, friction=seed % 3 == 0)  # type: ignore[arg-type]
 
 
+SAME = 100.0
+"""Times rounding: results that near are those of one program, whose numbers were fitted to rounded results."""
+
+
 @dataclass(frozen=True)
 class Judged:
     """What came of a planted fault.
@@ -45,12 +49,14 @@ class Judged:
         visible: whether it changes a number by more than rounding can.
         detected: whether it was seen to differ.
         first: whether it is named: as the cause, or as one that no number of these states tells from it.
+        same: else, whether what is named gives the same results at other states too, so that no torque can tell.
         explanations: what was found.
     """
 
     visible: bool
     detected: bool
     first: bool
+    same: bool
     explanations: list[Explanation]
 
 
@@ -103,10 +109,21 @@ class Bench:
         evidence = self.evidence(values, tolerance)
         ratio = float(evidence.of_tolerance(self.expected).max())
         if ratio <= 1.0:
-            return Judged(ratio > 2.0, False, False, [])
+            return Judged(ratio > 2.0, False, False, False, [])
         found = Search(evidence, self.base, self.hypotheses, raw=self.raw).run()
         explaining = [own for own in found if own.explains]
-        return Judged(True, True, any(names(own, faults) for own in explaining), explaining)
+        named = any(names(own, faults) for own in explaining)
+        return Judged(True, True, named, not named and any(self.same(own, faults) for own in explaining), explaining)
+
+    def same(self, found: Explanation, faults: Sequence[Fault]) -> bool:
+        """Whether an explanation is the faulty program itself in other words: it gives the same at other states."""
+        batch = sample_states(Robot(self.model), 300, 1).states
+        rounding = spread(default_allowance(batch), self.quantities)
+        planted = [own for own, _ in faults]
+        numbers = [x for _, own in faults for x in own]
+        programs = applied(self.base, planted, numbers), applied(self.base, found.hypotheses, found.numbers)
+        x, y = (flat(own.evaluate(batch), self.quantities) for own in programs)
+        return bool((np.abs(x - y) <= SAME * (rounding + 1e-12 * np.abs(x).max(axis=0))).all())
 
 
 def names(found: Explanation, faults: Sequence[Fault]) -> bool:

@@ -9,8 +9,8 @@ what lies within the tolerance in every state is an explanation.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
-from itertools import islice
+from dataclasses import dataclass, replace
+from itertools import islice, product
 
 import numpy as np
 
@@ -38,6 +38,8 @@ NEAR = 0.5
 
 CLOSE = 4.0
 """A fit whose largest error is less than so many times what rounding explains is fitted in the largest error too."""
+COMBINED = 64
+"""Of sets that are alike on the sample, so many are computed on all states."""
 
 OUTER = 6
 """On top of so many of the best hypotheses all others are tried."""
@@ -53,6 +55,9 @@ FEW = 3
 
 FAR = 100.0
 """Times what rounding explains: a change that leaves more is not computed again."""
+
+FAR_STARTS = (-10.0, -6.0, -3.5, -2.0, -1.0, -0.5, 0.5, 2.0, 3.5, 6.0, 10.0)
+"""Times the first step of a number that does not enter linearly: from the best of these its fit begins again."""
 
 ITERATIONS = 8
 """Of a fit, which is nearly linear."""
@@ -153,6 +158,8 @@ class Search:
         singles = self._visible(self.raw)
         self.ranked = sorted((self._rank((), one) for one in singles), key=_order)
         best = self.confirmed(self.ranked)
+        if not any(own.explains and own.fitted <= FEW for own in best):
+            best += self._far(singles)
         if any(own.explains and own.fitted <= FEW for own in best):
             return self._cheapest(best)
         for stage in (self._sums, self._conventions, self._on_top):
@@ -182,6 +189,23 @@ class Search:
     def _rank(self, before: tuple[Change, ...], one: Change, target: Array | None = None) -> Candidate:
         """A hypothesis more, by how much of the difference is left."""
         return _left(self.target if target is None else target, one) / self.size, (*before, one)
+
+    def _far(self, singles: Sequence[Change]) -> list[Explanation]:
+        """Hypotheses with one number that does not enter linearly, fitted from the best of numbers far and near."""
+        found = []
+        for own in singles:
+            hypothesis = own.hypothesis
+            if own.fitted != 1 or hypothesis.parameters is not None:
+                continue
+            (neutral,), (start,) = hypothesis.neutral, hypothesis.start
+            numbers = [neutral + times * (start - neutral) for times in FAR_STARTS]
+            tried = [self._judged((hypothesis,), (x,), self.sample) for x in numbers]
+            best = min(tried, key=lambda one: one.left)
+            if best.left < 1.0:
+                fit = self.fit((hypothesis,), self.sample, best.numbers)
+                if fit.explains:
+                    found.append(self._on_all(fit, (own.alike,)))
+        return found
 
     def _sums(self, singles: Sequence[Change]) -> list[Candidate]:
         """Pairs by the sum of their changes."""
@@ -271,10 +295,30 @@ class Search:
             if left > NEAR and found:
                 break
             fit = self.fit(tuple(one.hypothesis for one in own), self.sample)
-            if fit.explains and len(self.evidence.batch) > len(self.sample.batch):
-                fit = self.fit(fit.hypotheses, self.evidence, fit.numbers)
-            found.append(Explanation(fit.hypotheses, fit.numbers, fit.worst, fit.left, tuple(one.alike for one in own)))
+            alike = tuple(one.alike for one in own)
+            found.append(self._on_all(fit, alike) if fit.explains else replace(fit, alike=alike))
         return found
+
+    def _on_all(self, fit: Explanation, alike: tuple[tuple[Hypothesis, ...], ...]) -> Explanation:
+        """What explains the sample, on all states; of those that are alike on the sample, those that are so on all."""
+        slots = [(own, *others) for own, others in zip(fit.hypotheses, alike, strict=True)]
+        sets = islice(product(*slots), COMBINED)
+        first = next((own for own in (self._of_all(one, fit) for one in sets) if own.explains), None)
+        if first is None:
+            return replace(self._of_all(fit.hypotheses, fit), alike=alike)
+        kept = []
+        for k, (slot, chosen) in enumerate(zip(slots, first.hypotheses, strict=True)):
+            before, after = first.hypotheses[:k], first.hypotheses[k + 1 :]
+            others = [own for own in slot if own is not chosen]
+            kept.append(tuple(own for own in others if self._of_all((*before, own, *after)).explains))
+        return replace(first, alike=tuple(kept))
+
+    def _of_all(self, hypotheses: tuple[Hypothesis, ...], known: Explanation | None = None) -> Explanation:
+        """A set on all states, its numbers fitted to the sample first."""
+        fit = known if known is not None and known.hypotheses == hypotheses else self.fit(hypotheses, self.sample)
+        if not fit.explains or len(self.evidence.batch) == len(self.sample.batch):
+            return fit
+        return self.fit(hypotheses, self.evidence, fit.numbers)
 
     def _hopeless(self, one: Change) -> bool:
         """Whether a change, which is known as it is, leaves far more than rounding."""
