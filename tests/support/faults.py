@@ -11,10 +11,11 @@ import numpy as np
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.diagnosis.evidence import Evidence, flat, screened, spread
+from rttrr_pin.diagnosis.fitting import Explanation
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.predictions import Raw, applied, predicted, raw_changes
 from rttrr_pin.diagnosis.run import hypotheses_of
-from rttrr_pin.diagnosis.search import Explanation, Search
+from rttrr_pin.diagnosis.search import Search
 from rttrr_pin.diagnosis.states import sample_states
 from rttrr_pin.diagnosis.variant import Variant
 from rttrr_pin.implementations import default_allowance

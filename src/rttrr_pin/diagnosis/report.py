@@ -81,7 +81,7 @@ def _sentence(result: Diagnosis) -> str:
     seconds = f"({result.seconds:.1f} s)"
     if result.passed:
         return f"all differences are rounding {seconds}"
-    before = f"the largest difference is {result.residual_before:.2g} times what rounding explains"
+    before = f"the largest difference is {result.residual_before:.3g} times what rounding explains"
     if result.verdict == "explained":
         count = "one cause" if len(result.causes) == 1 else f"{len(result.causes)} causes"
         return f"by {count}: {before}, and {result.residual_after:.2g} with that {seconds}"

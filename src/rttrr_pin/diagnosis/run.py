@@ -17,6 +17,7 @@ from rttrr_pin.diagnosis.conventions import conventions
 from rttrr_pin.diagnosis.counterexample import counterexample
 from rttrr_pin.diagnosis.dependence import dependence
 from rttrr_pin.diagnosis.evidence import Evidence, flat, part_of, places, spread
+from rttrr_pin.diagnosis.fitting import Explanation
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.joints import joints
 from rttrr_pin.diagnosis.levers import levers
@@ -25,7 +26,7 @@ from rttrr_pin.diagnosis.parameters import parameters
 from rttrr_pin.diagnosis.placements import placements
 from rttrr_pin.diagnosis.predictions import applied, predicted
 from rttrr_pin.diagnosis.results import Cause, Diagnosis, NearMiss, Residual
-from rttrr_pin.diagnosis.search import Explanation, Progress, Search
+from rttrr_pin.diagnosis.search import Progress, Search
 from rttrr_pin.diagnosis.states import sample_states
 from rttrr_pin.diagnosis.variant import Variant
 from rttrr_pin.errors import InputError

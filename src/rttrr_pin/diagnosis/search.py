@@ -9,21 +9,20 @@ what lies within the tolerance in every state is an explanation.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, replace
-from itertools import islice, product
+from dataclasses import replace
+from itertools import islice
 
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.diagnosis.evidence import Evidence, screened, with_worst
+from rttrr_pin.diagnosis.fitting import Explanation, Fitting, growth
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
-from rttrr_pin.diagnosis.minimax import minimax
 from rttrr_pin.diagnosis.predictions import (
     Change,
     Raw,
     Stack,
     applied,
-    jacobian,
     predicted,
     raw_changes,
     visible_changes,
@@ -35,11 +34,6 @@ CONFIRMED = 40
 
 NEAR = 0.5
 """A set is computed only if it leaves less than this part of the difference."""
-
-CLOSE = 4.0
-"""A fit whose largest error is less than so many times what rounding explains is fitted in the largest error too."""
-COMBINED = 64
-"""Of sets that are alike on the sample, so many are computed on all states."""
 
 OUTER = 6
 """On top of so many of the best hypotheses all others are tried."""
@@ -59,9 +53,6 @@ FAR = 100.0
 FAR_STARTS = (-10.0, -6.0, -3.5, -2.0, -1.0, -0.5, 0.5, 2.0, 3.5, 6.0, 10.0)
 """Times the first step of a number that does not enter linearly: from the best of these its fit begins again."""
 
-ITERATIONS = 8
-"""Of a fit, which is nearly linear."""
-
 HIDDEN = 0.01
 """If the largest difference of the sample is less than this part of the largest, the worst states are taken in."""
 
@@ -69,45 +60,6 @@ FLOOR = 1e-7
 """A number's scale is at least this part of its size: less is not told apart while sets are ranked."""
 
 Progress = Callable[[int], None]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Explanation:
-    """A set of hypotheses, and how far it goes.
-
-    Attributes:
-        hypotheses: the set.
-        numbers: the fitted numbers of all, one after the other.
-        worst: the largest error / tolerance that is left.
-        left: the part of the difference that is left, root mean square, each number on its own scale.
-        alike: for each hypothesis others that would do the same.
-    """
-
-    hypotheses: tuple[Hypothesis, ...]
-    numbers: tuple[float, ...]
-    worst: float
-    left: float
-    alike: tuple[tuple[Hypothesis, ...], ...] = ()
-
-    @property
-    def explains(self) -> bool:
-        """Whether what is left is rounding."""
-        return self.worst <= 1.0
-
-    @property
-    def fitted(self) -> int:
-        """How many numbers are fitted."""
-        return len(self.numbers)
-
-    @property
-    def cost(self) -> int:
-        """What it takes to say it: a fitted number as much as two hypotheses."""
-        return len(self.hypotheses) + 2 * self.fitted
-
-    def numbers_of(self, k: int) -> tuple[float, ...]:
-        """The fitted numbers of one hypothesis."""
-        first = sum(len(own.start) for own in self.hypotheses[:k])
-        return self.numbers[first : first + len(self.hypotheses[k].start)]
 
 
 Candidate = tuple[float, tuple[Change, ...]]
@@ -124,6 +76,7 @@ class Search:
         progress: called with the number of hypotheses tried.
         raw: what they change on the sample, where it is known already.
         sample: the states on which they are tried first.
+        fitting: fits the numbers of a set.
         tried: how many times one was tried.
         ranked: single hypotheses, by how much of the difference they leave.
     """
@@ -149,6 +102,7 @@ class Search:
         )
         scale = np.maximum(np.maximum(seen, allowed), FLOOR * usual)
         self.scale = np.broadcast_to(np.where(scale > 0.0, scale, 1.0), part.values.shape)
+        self.fitting = Fitting(base, evidence, part, self.scale[0])
         self.target = (part.difference / self.scale).ravel()
         self.size = float(np.linalg.norm(self.target))
 
@@ -199,12 +153,12 @@ class Search:
                 continue
             (neutral,), (start,) = hypothesis.neutral, hypothesis.start
             numbers = [neutral + times * (start - neutral) for times in FAR_STARTS]
-            tried = [self._judged((hypothesis,), (x,), self.sample) for x in numbers]
+            tried = [self.fitting.judged((hypothesis,), (x,), self.sample) for x in numbers]
             best = min(tried, key=lambda one: one.left)
             if best.left < 1.0:
-                fit = self.fit((hypothesis,), self.sample, best.numbers)
+                fit = self.fitting.fit((hypothesis,), self.sample, best.numbers)
                 if fit.explains:
-                    found.append(self._on_all(fit, (own.alike,)))
+                    found.append(self.fitting.on_all(fit, (own.alike,)))
         return found
 
     def _sums(self, singles: Sequence[Change]) -> list[Candidate]:
@@ -273,7 +227,7 @@ class Search:
 
     def _alone(self, own: Change) -> Variant | None:
         """The program under one hypothesis, its numbers fitted as if it were the only one."""
-        fit = self.fit((own.hypothesis,), self.sample)
+        fit = self.fitting.fit((own.hypothesis,), self.sample)
         variant = applied(self.base, (own.hypothesis,), fit.numbers)
         return variant if np.isfinite(predicted(variant, self.sample)).all() else None
 
@@ -294,31 +248,10 @@ class Search:
         for left, own in islice(promising, CONFIRMED):
             if left > NEAR and found:
                 break
-            fit = self.fit(tuple(one.hypothesis for one in own), self.sample)
+            fit = self.fitting.fit(tuple(one.hypothesis for one in own), self.sample)
             alike = tuple(one.alike for one in own)
-            found.append(self._on_all(fit, alike) if fit.explains else replace(fit, alike=alike))
+            found.append(self.fitting.on_all(fit, alike) if fit.explains else replace(fit, alike=alike))
         return found
-
-    def _on_all(self, fit: Explanation, alike: tuple[tuple[Hypothesis, ...], ...]) -> Explanation:
-        """What explains the sample, on all states; of those that are alike on the sample, those that are so on all."""
-        slots = [(own, *others) for own, others in zip(fit.hypotheses, alike, strict=True)]
-        sets = islice(product(*slots), COMBINED)
-        first = next((own for own in (self._of_all(one, fit) for one in sets) if own.explains), None)
-        if first is None:
-            return replace(self._of_all(fit.hypotheses, fit), alike=alike)
-        kept = []
-        for k, (slot, chosen) in enumerate(zip(slots, first.hypotheses, strict=True)):
-            before, after = first.hypotheses[:k], first.hypotheses[k + 1 :]
-            others = [own for own in slot if own is not chosen]
-            kept.append(tuple(own for own in others if self._of_all((*before, own, *after)).explains))
-        return replace(first, alike=tuple(kept))
-
-    def _of_all(self, hypotheses: tuple[Hypothesis, ...], known: Explanation | None = None) -> Explanation:
-        """A set on all states, its numbers fitted to the sample first."""
-        fit = known if known is not None and known.hypotheses == hypotheses else self.fit(hypotheses, self.sample)
-        if not fit.explains or len(self.evidence.batch) == len(self.sample.batch):
-            return fit
-        return self.fit(hypotheses, self.evidence, fit.numbers)
 
     def _hopeless(self, one: Change) -> bool:
         """Whether a change, which is known as it is, leaves far more than rounding."""
@@ -326,79 +259,14 @@ class Search:
             return False  # it may not be linear
         rest = self.target - one.change if not one.fitted else _rest(self.target, one.change)
         allowed = (self.sample.tolerance + self.sample.rounding) / self.scale
-        growth = np.broadcast_to(_growth(self.sample.values, self.sample.expected), allowed.shape)
-        return bool((np.abs(rest) > FAR * growth.ravel() * allowed.ravel()).any())
-
-    def fit(
-        self, hypotheses: tuple[Hypothesis, ...], evidence: Evidence, start: Sequence[float] | None = None
-    ) -> Explanation:
-        """Fit the numbers of a set by Gauss-Newton, each equation over its tolerance; round them where one may."""
-        neutral = [x for own in hypotheses for x in own.neutral]
-        towards = [x for own in hypotheses for x in own.start]
-        numbers = [*(neutral if start is None else start)]
-        weight = 1.0 / np.maximum(evidence.tolerance + evidence.rounding, np.finfo(float).tiny)
-        weight /= weight.max()
-        best = self._judged(hypotheses, numbers, evidence)
-        for k in range(ITERATIONS if numbers else 0):
-            base = predicted(applied(self.base, hypotheses, numbers), evidence)
-            aim = towards if k == 0 and start is None else numbers
-            J = jacobian(self.base, hypotheses, numbers, aim, evidence, base)
-            rest = ((evidence.values - base) * weight).ravel()
-            if not (np.isfinite(J).all() and np.isfinite(rest).all()):
-                break
-            step = np.linalg.lstsq((J * weight.ravel()).T, rest, rcond=None)[0]
-            numbers = [x + float(dx) for x, dx in zip(numbers, step, strict=True)]
-            after = self._judged(hypotheses, numbers, evidence)
-            stuck = k > 1 and after.left > 0.5 * best.left
-            best = min(after, best, key=lambda own: (own.left, own.worst)) if k else after
-            if best.explains or stuck:
-                break
-        if numbers and 1.0 < best.worst < CLOSE:
-            best = min(best, self._closer(best, evidence), key=lambda own: own.worst)
-        return self._rounded(best, evidence) if best.explains and numbers else best
-
-    def _closer(self, own: Explanation, evidence: Evidence) -> Explanation:
-        """The same fitted in the largest error."""
-        base = predicted(applied(self.base, own.hypotheses, own.numbers), evidence)
-        J = jacobian(self.base, own.hypotheses, own.numbers, own.numbers, evidence, base)
-        bound = np.maximum(evidence.tolerance + evidence.rounding, np.finfo(float).tiny)
-        step = minimax(J, (evidence.values - base).ravel(), bound.ravel())
-        if step is None:
-            return own
-        return self._judged(own.hypotheses, [x + float(dx) for x, dx in zip(own.numbers, step, strict=True)], evidence)
-
-    def _rounded(self, own: Explanation, evidence: Evidence) -> Explanation:
-        """The same with numbers of few digits, where they explain it as well."""
-        for digits in (2, 3, 4, 6, 9):
-            numbers = [float(f"{x:.{digits}g}") for x in own.numbers]
-            other = self._judged(own.hypotheses, numbers, evidence)
-            if other.explains and other.left <= 2.0 * own.left:
-                return other
-        return own
-
-    def _judged(self, hypotheses: tuple[Hypothesis, ...], numbers: Sequence[float], evidence: Evidence) -> Explanation:
-        """How far a set goes."""
-        values = predicted(applied(self.base, hypotheses, numbers), evidence)
-        growth = _growth(values, evidence.expected)
-        worst = float(evidence.of_tolerance(values, growth).max(initial=0.0))
-        scale = self.scale[0]
-        with np.errstate(over="ignore", invalid="ignore"):
-            sizes = [float(np.linalg.norm(x / scale)) for x in (evidence.values - values, evidence.difference)]
-        left = sizes[0] / sizes[1] if sizes[1] else 0.0
-        return Explanation(hypotheses, tuple(numbers), worst, left if np.isfinite(left) else np.inf)
+        larger = np.broadcast_to(growth(self.sample.values, self.sample.expected), allowed.shape)
+        return bool((np.abs(rest) > FAR * larger.ravel() * allowed.ravel()).any())
 
     def _cheapest(self, found: Sequence[Explanation]) -> list[Explanation]:
         """Explanations that cost as little as the cheapest, those that leave least first."""
         explaining = [own for own in found if own.explains]
         least = min(own.cost for own in explaining)
         return sorted((own for own in explaining if own.cost == least), key=lambda own: own.worst)
-
-
-def _growth(values: Array, expected: Array) -> Array:
-    """How many times as large as expected results a program's are, number by number, at least 1: so its rounding is."""
-    sizes = [np.sqrt(np.mean(x**2, axis=0)) for x in (values, expected)]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(sizes[1] > 0.0, np.maximum(sizes[0] / sizes[1], 1.0), 1.0)
 
 
 def _general(own: Hypothesis) -> bool:
