@@ -38,6 +38,9 @@ NEAR = 0.5
 OUTER = 6
 """On top of so many of the best hypotheses all others are tried."""
 
+OUTERMOST = 40
+"""On top of so many, those on inertial parameters, whose changes cost little."""
+
 MOST = 4
 """Hypotheses of one set."""
 
@@ -216,14 +219,21 @@ class Search:
         return sorted(found, key=_order)
 
     def _on_top(self, singles: Sequence[Change]) -> list[Candidate]:
-        """All hypotheses on top of those that come nearest by themselves."""
+        """On top of those that come nearest by themselves all hypotheses; on top of more, inertial parameters."""
         found: list[Candidate] = []
-        for _, (own,) in self.ranked[:OUTER]:
+        for rank, (_, (own,)) in enumerate(self.ranked[:OUTERMOST]):
             variant = self._alone(own)
-            if variant is not None:
-                target = ((self.sample.values - predicted(variant, self.sample)) / self.scale).ravel()
-                found += [self._rank((own,), one, target) for one in self.changes_on(variant)]
+            if variant is None or (rank >= OUTER and own.hypothesis.parameters is not None):
+                continue
+            target = ((self.sample.values - predicted(variant, self.sample)) / self.scale).ravel()
+            inner = self.changes_on(variant) if rank < OUTER else self._parameters_on(variant)
+            found += [self._rank((own,), one, target) for one in inner]
         return sorted(found, key=_order)
+
+    def _parameters_on(self, outer: Variant) -> list[Change]:
+        """What hypotheses on inertial parameters change on top of a program."""
+        own = [one for one in self.hypotheses if one.parameters is not None]
+        return visible_changes(raw_changes(outer, own, self.sample), self.sample, self.scale)
 
     def _alone(self, own: Change) -> Variant | None:
         """The program under one hypothesis, its numbers fitted as if it were the only one."""
