@@ -32,6 +32,11 @@ from support.processes import of_session
 
 ROBOTS = Path(__file__).parents[1] / "urdf"
 
+DIFFER = Path(__file__).parents[1] / "tests/data/torques_differ"
+
+STILL = Path(__file__).parents[1] / "tests/data/still.py"
+"""A program that gives zeros."""
+
 COMMANDS: dict[str, list[str]] = {
     "validate": ["validate", "rttrr", "--json", "out.json"],
     "validate FOLDER": ["validate", str(ROBOTS), "--states", "2000", "--json", "out.json"],
@@ -43,6 +48,17 @@ COMMANDS: dict[str, list[str]] = {
     "inspect": ["inspect", str(ROBOTS / "rttrr.urdf"), "--json", "out.json", "--fix", "fixed.urdf"],
     "inspect FOLDER": ["inspect", str(ROBOTS), "--json", "out.json", "--sarif", "out.sarif", "--junit", "out.xml"],
     "sample": ["sample", "rttrr", "-n", "5000", "-o", "states.csv"],
+    "compare": ["compare", "rttrr", "trtrr", "--json", "out.json", "--html", "out.html"],
+    "diagnose": [
+        "diagnose",
+        str(DIFFER / "fingers.urdf"),
+        str(DIFFER / "pinocchio_without_mimic.csv"),
+        "--json",
+        "out.json",
+        "--html",
+        "out.html",
+    ],
+    "diagnose a program": ["diagnose", "trr", "--subject", f"{sys.executable} {STILL}", "--json", "out.json"],
     "new": ["new", "RTTRR", "-o", "new.urdf"],
 }
 """What is run, in an empty folder."""

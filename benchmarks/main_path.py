@@ -20,6 +20,7 @@ COMMANDS = {
     "inspect": ["inspect"],
     "validate --states 200": ["validate", "--states", "200"],
     "validate": ["validate"],
+    "diagnose --subject pinocchio": ["diagnose", "--subject", "pinocchio"],
     "audit --equation 36": ["audit", "--equation", "36"],
 }
 """What a user types, by name."""

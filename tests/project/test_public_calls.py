@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import tempfile
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
@@ -14,8 +15,9 @@ import pytest
 import rttrr_pin
 from rttrr_pin import Joint, JointEffects, Limits, Link, Mimic, Model, RandomPayload, Robot, RttrrError, Wrench
 from rttrr_pin.core.joints import REVOLUTE
-from rttrr_pin.diagnosis import sample_states
+from rttrr_pin.diagnosis import diagnose, diagnose_log, sample_states
 from rttrr_pin.validation import Sampler
+from support.logs import write_log
 
 ROOT = Path(__file__).parents[2]
 
@@ -33,6 +35,12 @@ COORDINATES = {name: np.full(5, 0.3) for name in "qva"}
 AT = {"link": None, "point": (0, 0, 0), "expressed_in": "link"}
 STATES = {"seed": 0, "sampling": "uniform", "payload": None}
 PROGRAMS = {"subject": "kernel", "reference": "recursion"}
+
+
+def the_log() -> Path:
+    path = Path(tempfile.mkdtemp()) / "log.csv"
+    write_log(path, rttrr_pin.load("rttrr"), rate=200.0, seconds=1.0)
+    return path
 
 
 @cache
@@ -116,6 +124,7 @@ def calls() -> dict[str, Call]:
             {"robot": robot, **PROGRAMS, "evaluations": 512, "seed": 0, "payload": None},
         ),
         "sample_states": (sample_states, {"robot": robot, "n": 10, "seed": 0, "payload": None}),
+        "diagnose": (diagnose, {"robot": robot, **PROGRAMS, "n_states": 3, "seed": 0, "payload": None}),
         "check_laws": (
             rttrr_pin.check_laws,
             {"robot": robot, "subject": "kernel", "n_states": 2, **STATES, "select": ("E",)},
@@ -124,6 +133,7 @@ def calls() -> dict[str, Call]:
             rttrr_pin.compare_robots,
             {"a": robot, "b": "trtrr", "n_states": 3, "seed": 0},
         ),
+        "diagnose_log": (diagnose_log, {"robot": robot, "path": the_log()}),
         "inspect": (rttrr_pin.inspect, {"robot": robot, "folder": None, "select": "P", "ignore": ()}),
         "derive": (
             rttrr_pin.derive,
@@ -140,7 +150,7 @@ NAMES = (
     *("wrench_torque", "WrenchEstimate", "with_joint_effects", "with_payload_body", "with_locked"),
     *("LinkWrenches", "Wrench", "RandomPayload", "JointEffects", "Joint", "Limits", "Mimic", "Link", "Model"),
     *("validate", "compare_state", "search_worst_state", "check_laws", "inspect", "derive", "read_publication"),
-    *("audit", "compare_robots", "sample_states"),
+    *("audit", "compare_robots", "sample_states", "diagnose", "diagnose_log"),
     *(
         "BaseParameters.of",
         "BaseParameters.regressor",

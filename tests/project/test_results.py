@@ -8,6 +8,7 @@ import inspect
 import json
 import pickle
 import re
+import tempfile
 from collections.abc import Callable
 from functools import cache
 from importlib import import_module
@@ -19,9 +20,11 @@ import pytest
 
 import rttrr_pin
 from rttrr_pin import errors
-from rttrr_pin.diagnosis import sample_states
+from rttrr_pin.diagnosis import diagnose, diagnose_log, sample_states
 from rttrr_pin.implementations import make_implementation
 from rttrr_pin.validation import Sampler
+from support.implementations import still
+from support.logs import write_log
 
 EXAMPLE = Path(__file__).parents[2] / "examples/audit_two_link.toml"
 
@@ -37,6 +40,12 @@ LONGEST = 6000
 
 def not_a_number(q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
     return np.full(5, np.nan)
+
+
+def the_log(robot: rttrr_pin.Robot) -> Path:
+    path = Path(tempfile.mkdtemp()) / "log.csv"
+    write_log(path, robot, rate=200.0, seconds=1.0)
+    return path
 
 
 @cache
@@ -66,6 +75,9 @@ def objects() -> dict[str, Any]:
         "StateReport of nan": rttrr_pin.compare_state(robot, 3, **wrong),
         "WorstCase": rttrr_pin.search_worst_state(robot, "recursion", "kernel", np.int64(512), seed=np.int64(1)),  # type: ignore[arg-type]
         "Sample": sample_states(robot, 10),
+        "Diagnosis": diagnose(robot, "recursion", n_states=np.int64(3), seed=np.int64(2)),  # type: ignore[arg-type]
+        "Diagnosis of a cause": diagnose(robot, still, n_states=20),
+        "LogDiagnosis": diagnose_log(robot, the_log(robot)),
         "LawReport": rttrr_pin.check_laws(robot, n_states=np.int64(2), seed=np.int64(2)),  # type: ignore[arg-type]
         "Inspection": rttrr_pin.inspect(robot),
         "Comparison": rttrr_pin.compare_robots(robot, "trtrr", np.int64(3), seed=np.int64(2)),  # type: ignore[arg-type]
@@ -89,6 +101,9 @@ NAMES = (
         "Publication",
         "AuditResult",
         "Comparison",
+        "Diagnosis",
+        "Diagnosis of a cause",
+        "LogDiagnosis",
     ),
 )
 
@@ -123,6 +138,7 @@ def test_objects_can_be_compared_and_shown(name: str) -> None:
 
 AS_DATA = (
     *("Validation", "Validation of nan", "StateReport", "StateReport of nan", "WorstCase", "LawReport", "Inspection"),
+    *("Diagnosis", "Diagnosis of a cause", "LogDiagnosis"),
     *("Comparison", "Derivation", "Derivation in steps", "AuditResult", "Enclosures", "BaseParameters"),
 )
 

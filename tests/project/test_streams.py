@@ -67,6 +67,7 @@ COMMANDS: dict[str, list[str]] = {
     "search": ["search", "{robot}", "--evaluations", "600"],
     "laws": ["laws", "{robot}", "--states", "20"],
     "sample": ["sample", "{robot}", "-n", "20"],
+    "diagnose": ["diagnose", "{robot}", "--subject", "support.implementations:still", "--states", "20"],
     "compare": ["compare", "{robot}", "{robot}", "--full"],
     "derive": ["derive", "{robot}"],
     "inspect": ["inspect", "{robot}"],

@@ -36,20 +36,26 @@ FILES = {
     "equations.toml": EQUATION,
     "my_id.py": "def my_id(q, v, a): return a\n",
     "settings.toml": "",
+    "results.csv": "q_j,v_j,a_j,tau_j\n0.1,0.2,0.3,0.4\n",
 }
 
 COMMANDS = {
     "rod.obj": ["inspect arm.urdf --json", "inspect arm.urdf --fix"],
     "part.xacro": ["validate arm.xacro --xacro --states 5 --json", "inspect arm.xacro --xacro --sarif"],
     "part.xml": ["laws arm.xml --states 5 --json", "sample arm.xml -n 5 -o", "compare arm.urdf arm.xml --json"],
+    "results.csv": ["diagnose arm.urdf results.csv --json", "diagnose arm.urdf results.csv --html"],
     "one/arm.urdf": [
         *("validate one --states 5 --json", "inspect one --junit", "derive one --c", "state one --json"),
-        "compare arm.urdf one --json",
+        *("compare arm.urdf one --json", "compare arm.urdf one --html", "diagnose one --subject kernel --html"),
     ],
     "arm.urdf": ["audit whole.toml --json", "audit parts.toml --latex"],
     "symbols.toml": ["audit parts.toml --html"],
     "equations.toml": ["audit parts.toml --markdown"],
-    "my_id.py": ["validate --subject my_id:my_id --json", "validate --subject 'python my_id.py' --json"],
+    "my_id.py": [
+        "validate --subject my_id:my_id --json",
+        "validate --subject 'python my_id.py' --json",
+        "diagnose --subject 'python my_id.py' --html",
+    ],
     "settings.toml": ["search --subject './my_id.py settings.toml' --json"],
 }
 """By the file that is read, commands that would write it."""

@@ -188,6 +188,24 @@ def test_no_worker_outlives_the_program(number: signal.Signals, whom: str, folde
 
 
 @SIGNALS
+def test_no_program_under_test_outlives_diagnose(number: signal.Signals, folder: Path, tmp_path: Path) -> None:
+    program, noted = tmp_path / "my_id", tmp_path / "pid"
+    note = f"open({str(noted) + '.part'!r}, 'w').write(str(os.getpid())); os.rename({str(noted) + '.part'!r}, {str(noted)!r})"
+    program.write_text(f"#!{sys.executable}\nimport os, time\n{note}\ntime.sleep(1000)\n")
+    program.chmod(0o755)
+    words = ["diagnose", str(folder / "any-axes.urdf"), "--subject", str(program), "--html", str(tmp_path / "out.html")]
+    process = started(words)
+    wait_for(noted.exists)
+    child = int(noted.read_text())
+    os.kill(process.pid, number)
+    out, error = process.communicate(timeout=60)
+    assert (process.returncode, out) == (128 + number, "")
+    assert error == f"{interrupts.ENDING[number]}: nothing was written\n"
+    assert left_behind(process.pid) == left_behind(child) == []
+    assert not (tmp_path / "out.html").exists()
+
+
+@SIGNALS
 def test_a_signal_of_which_a_library_makes_another_exception(
     number: int, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -33,6 +33,11 @@ class Altered:
         return Evaluation(values, result.allowance, result.tau_joint)
 
 
+def still(q: Any, v: Any, a: Any) -> Any:
+    """A program that gives zeros."""
+    return 0.0 * a
+
+
 def altered(robot: Robot | Model, spoil: Spoil, base: str = "pinocchio", name: str = "altered") -> Altered:
     """An implementation of that name, with its values changed."""
     model = robot.model if isinstance(robot, Robot) else robot
@@ -59,3 +64,14 @@ class Wrong(Altered):
 
 def _n_of_link_3(values: dict[str, Any], batch: Batch) -> None:
     values["n"][:, 2] += 1.0
+
+
+class Double(Altered):
+    """Pinocchio with twice the tau, for the registry of names."""
+
+    def __init__(self, model: Model) -> None:
+        super().__init__(make_implementation("pinocchio", model), _twice_tau, "double")
+
+
+def _twice_tau(values: dict[str, Any], batch: Batch) -> None:
+    values["tau"] *= 2.0

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-from typing import Any
+from functools import partial
+from typing import TYPE_CHECKING, Any
 
 import click
 
-from rttrr_pin.diagnosis.report import show_diagnosis
+from rttrr_pin.core.arguments import whole_number
 from rttrr_pin.errors import InputError
-from rttrr_pin.reporting.options import flag, outcome, robot, seed
+from rttrr_pin.reporting.options import flag, outcome, page, robot, seed
 from rttrr_pin.reporting.output import AGREE, DISAGREE, Output, progress, write_json
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.options import RunOptions, conditions, payload
+
+if TYPE_CHECKING:
+    from rttrr_pin.diagnosis.log_diagnosis import LogDiagnosis
+    from rttrr_pin.diagnosis.results import Diagnosis
 
 
 @click.command
@@ -32,40 +37,62 @@ from rttrr_pin.validation.options import RunOptions, conditions, payload
 @conditions
 @flag("--full", help="Show every joint and link, and all alternatives.")
 @outcome
+@page
 def diagnose(
-    results: str | None, subject: str | None, states: int, full: bool, json: str | None, quiet: bool, **run: Any
+    results: str | None,
+    subject: str | None,
+    states: int,
+    full: bool,
+    json: str | None,
+    html: str | None,
+    quiet: bool,
+    **run: Any,
 ) -> int:
     """Name the cause where the results of a program differ: a convention, a number, a term of the recursion.
 
     Exit code: 0 agrees, 1 differs, 2 unusable input.
     """
     from rttrr_pin.diagnosis.log import is_log
-    from rttrr_pin.diagnosis.run import diagnose as find
 
     if (results is None) == (subject is None):
         raise InputError("name a table of results or a --subject, one of the two: rttrr-pin diagnose ROBOT results.csv")
-    chosen = results if subject is None else subject
-    assert chosen is not None
+    chosen = subject if results is None else results
     options = RunOptions(**(run | {"subject": chosen, "reference": (run["reference"],)}))
-    loaded = options.load(json)
-    console = Output(quiet=quiet or json == "-")
+    whole_number("--states", states, 1, 10**6, "10^6")
+    loaded = options.load(json, others={"--html": html})
+    console = Output(quiet=quiet or "-" in (json, html))
+    result: Diagnosis | LogDiagnosis
     if results is not None and is_log(results, loaded.model):
-        return _of_log(loaded, results, console, json)
-    what = options.chosen()
-    [reference] = what.pop("reference")
-    with progress(1000, quiet, "hypotheses") as advance:
-        result = find(loaded, **what, reference=reference, n_states=states, progress=advance)
+        from rttrr_pin.diagnosis.log_diagnosis import diagnose_log
+        from rttrr_pin.diagnosis.log_report import show_log
+
+        result = log = diagnose_log(loaded, results)
+        show = partial(show_log, log, console)
+    else:
+        from rttrr_pin.diagnosis.report import show_diagnosis
+
+        result = found = _find(loaded, options, states, quiet)
+        show = partial(show_diagnosis, found, console, full)
     write_json(json, result.to_dict)
-    show_diagnosis(result, console, full)
+    if html is not None:
+        from rttrr_pin.diagnosis.pages import write_page
+
+        write_page(html, result)
+    show()
     return AGREE if result.passed else DISAGREE
 
 
-def _of_log(robot: Robot, path: str, console: Output, json: str | None) -> int:
-    """What a real robot's torques differ by."""
-    from rttrr_pin.diagnosis.log_diagnosis import diagnose_log
-    from rttrr_pin.diagnosis.log_report import show_log
+def _find(robot: Robot, options: RunOptions, states: int, quiet: bool) -> Diagnosis:
+    """Why a program's results differ."""
+    from rttrr_pin.diagnosis.run import diagnose as find
 
-    report = diagnose_log(robot, path)
-    write_json(json, report.to_dict)
-    show_log(report, console)
-    return AGREE if report.passed else DISAGREE
+    what = options.chosen()
+    [reference] = what.pop("reference")
+    with progress(None, quiet, "hypotheses") as advance:
+        result = find(robot, **what, reference=reference, n_states=states, progress=advance)
+    if not any(own.size or own.before for own in result.residuals):
+        raise InputError(
+            f"all results for robot {robot.name!r} are zero in every state, by both programs: nothing was compared; "
+            "pass gravity, a payload or states in which a force acts"
+        )
+    return result

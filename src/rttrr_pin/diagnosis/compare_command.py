@@ -9,7 +9,18 @@ import click
 
 from rttrr_pin.diagnosis.compare import compare_robots
 from rttrr_pin.diagnosis.compare_report import show_comparison
-from rttrr_pin.reporting.options import base, check_targets, flag, friction, gravity, outcome, reading, seed, xacro
+from rttrr_pin.reporting.options import (
+    base,
+    check_targets,
+    flag,
+    friction,
+    gravity,
+    outcome,
+    page,
+    reading,
+    seed,
+    xacro,
+)
 from rttrr_pin.reporting.output import AGREE, DISAGREE, Output, write_json
 from rttrr_pin.validation.options import RunOptions
 
@@ -25,8 +36,11 @@ from rttrr_pin.validation.options import RunOptions
 @xacro
 @reading
 @outcome
+@page
 @flag("--full", help="Show every difference, and torques joint by joint.")
-def compare(a: str, b: str, states: int, json: str | None, quiet: bool, full: bool, **run: Any) -> int:
+def compare(
+    a: str, b: str, states: int, json: str | None, html: str | None, quiet: bool, full: bool, **run: Any
+) -> int:
     """Compare two descriptions of one robot: what differs, and what of it changes which torque by how much.
 
     Options of how a file is read go for both.
@@ -35,11 +49,16 @@ def compare(a: str, b: str, states: int, json: str | None, quiet: bool, full: bo
     """
     options = RunOptions(robot=a, **run)
     other = replace(options, robot=b)
-    check_targets({"--json": json}, [a, b])
-    first, second = options.load(json), other.load(json)
-    check_targets({"--json": json}, [a, b])
+    targets = {"--json": json, "--html": html}
+    check_targets(targets, [a, b])
+    first, second = (own.load(json, others={"--html": html}) for own in (options, other))
+    check_targets(targets, [a, b])
     result = compare_robots(first, second, n_states=states, seed=options.seed)
     result = replace(result, robots=(a, b))
     write_json(json, result.to_dict)
-    show_comparison(result, Output(quiet=quiet or json == "-"), full)
+    if html is not None:
+        from rttrr_pin.diagnosis.pages import write_page
+
+        write_page(html, result)
+    show_comparison(result, Output(quiet=quiet or "-" in (json, html)), full)
     return AGREE if result.passed else DISAGREE

@@ -36,10 +36,15 @@ def show_comparison(result: Comparison, console: Console, full: bool = False) ->
         console.print(Text(LEGEND, "dim"), soft_wrap=True)
     if full:
         console.print(_joints(result))
-    for line in (*_idle(result, full), *_rounding(result), *result.notes):
+    for line in remarks(result, full):
         console.print(Text(line, "dim"), soft_wrap=True)
     sentence = result.summary().partition(" ")[2]
     console.print(word(result.passed), Text(f"{sentence} ({result.seconds:.1f} s)"), soft_wrap=True)
+
+
+def remarks(result: Comparison, full: bool) -> tuple[str, ...]:
+    """What changes no torque, what printed digits explain, and notes."""
+    return (*_idle(result, full), *_rounding(result), *result.notes)
 
 
 def _table(rows: Sequence[Effect]) -> Table:

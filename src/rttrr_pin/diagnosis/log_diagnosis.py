@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from rttrr_pin.core.arguments import path_of
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.diagnosis.log import Log, read_log
 from rttrr_pin.diagnosis.log_causes import Candidate, candidates
@@ -150,7 +151,7 @@ def diagnose_log(robot: Robot, path: str | Path) -> LogDiagnosis:
     model = model_of(robot)
     if not model.nv:
         raise InputError(f"no joint of robot {model.name!r} moves: a log says nothing of it")
-    return explain(robot, read_log(path, model))
+    return explain(robot, read_log(path_of("path", path), model))
 
 
 def explain(robot: Robot, log: Log) -> LogDiagnosis:

@@ -20,13 +20,16 @@ STYLES = {"agrees": "bold green", "explained": "bold yellow", "unexplained": "bo
 
 def show_diagnosis(result: Diagnosis, console: Console, full: bool = False) -> None:
     """The verdict, the causes with their repairs, the differences before and after, and a test to paste."""
-    states = f"{result.n_states:,} {'states of the table' if result.sampling == 'table' else 'telling states'}"
-    console.print(Text(f"{result.robot}:", "bold"), Text(f"{result.subject} against {result.reference}, {states}"))
+    console.print(Text(f"{result.robot}:", "bold"), Text(compared(result)))
     for note in result.notes:
         console.print(Text(note, "dim"), soft_wrap=True)
     if not result.passed:
         console.print(_table(result, full))
-    console.print(Text(result.verdict.upper(), STYLES[result.verdict]), Text(_sentence(result)), soft_wrap=True)
+    console.print(
+        Text(result.verdict.upper(), STYLES[result.verdict]),
+        Text(f"{sentence(result)} ({result.seconds:.1f} s)"),
+        soft_wrap=True,
+    )
     for number, cause in enumerate(result.causes, 1):
         _show_cause(cause, f"{number}. " if len(result.causes) > 1 else "", console, full)
     for k, other in enumerate(result.others[: None if full else 3]):
@@ -43,10 +46,21 @@ def show_diagnosis(result: Diagnosis, console: Console, full: bool = False) -> N
         console.print(Text(result.counterexample), soft_wrap=True)
 
 
+def compared(result: Diagnosis) -> str:
+    """What was compared with what, in how many states."""
+    states = f"{result.n_states:,} {'states of the table' if result.sampling == 'table' else 'telling states'}"
+    return f"{result.subject} against {result.reference}, {states}"
+
+
 def told(cause: Cause) -> str:
     """A cause with its numbers, in one line."""
     numbers = values_of(cause.values)
     return f"{cause.sentence}{f' ({numbers})' if numbers else ''}"
+
+
+def place(cause: Cause) -> str:
+    """The equation and the line to look at; empty where there are none."""
+    return ": ".join(filter(None, [f"equation {cause.equation}" if cause.equation else "", cause.line]))
 
 
 def values_of(values: Mapping[str, Any]) -> str:
@@ -65,8 +79,7 @@ def _number(x: Any) -> str:
 def _show_cause(cause: Cause, number: str, console: Console, full: bool) -> None:
     console.print(Text(f"{number}{cause.program}: {told(cause)}", "bold"), soft_wrap=True)
     console.print(Text(f"   repair: {cause.repair}"), soft_wrap=True)
-    if cause.equation or cause.line:
-        where = ": ".join(filter(None, [f"equation {cause.equation}" if cause.equation else "", cause.line]))
+    if where := place(cause):
         console.print(Text(f"   see {where}"), soft_wrap=True)
     shown = cause.alternatives if full else cause.alternatives[:SHOWN]
     if shown:
@@ -77,15 +90,15 @@ def _show_cause(cause: Cause, number: str, console: Console, full: bool) -> None
             console.print(Text(f"   - and {len(cause.alternatives) - len(shown)} more; --full shows all"))
 
 
-def _sentence(result: Diagnosis) -> str:
-    seconds = f"({result.seconds:.1f} s)"
+def sentence(result: Diagnosis) -> str:
+    """What the verdict is about."""
     if result.passed:
-        return f"all differences are rounding {seconds}"
+        return "all differences are rounding"
     before = f"the largest difference is {result.residual_before:.3g} times what rounding explains"
     if result.verdict == "explained":
         count = "one cause" if len(result.causes) == 1 else f"{len(result.causes)} causes"
-        return f"by {count}: {before}, and {result.residual_after:.2g} with that {seconds}"
-    return f"{before}, and no set of the {result.tried:,} hypotheses that were tried explains it {seconds}"
+        return f"by {count}: {before}, and {result.residual_after:.2g} with that"
+    return f"{before}, and no set of the {result.tried:,} hypotheses that were tried explains it"
 
 
 def _table(result: Diagnosis, full: bool) -> Table:

@@ -74,6 +74,7 @@ reading = group(
     package,
 )
 quiet = flag("--quiet", "-q", help="Print nothing but errors.")
+page = target("--html", "a page of its own")
 outcome = group(target("--json", "the outcome as JSON"), quiet)
 
 

@@ -79,8 +79,11 @@ def discard_stdout() -> None:
 
 
 @contextmanager
-def progress(total: int, quiet: bool, what: str = "states") -> Iterator[Any]:
-    """A function to call with the number done; it shows a bar on stderr once the run has lasted a second."""
+def progress(total: int | None, quiet: bool, what: str = "states") -> Iterator[Any]:
+    """A function to call with the number done; it shows a bar on stderr once the run has lasted a second.
+
+    Without a total it shows the number and the time.
+    """
     started = time.monotonic()
     bar: Any = None
 
@@ -89,9 +92,11 @@ def progress(total: int, quiet: bool, what: str = "states") -> Iterator[Any]:
         if quiet or not sys.stderr.isatty() or time.monotonic() - started < SHOW_PROGRESS_AFTER:
             return
         if bar is None:
-            from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+            from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
-            columns = (TextColumn("{task.completed:,} of {task.total:,} " + what), BarColumn(), TimeRemainingColumn())
+            of = "" if total is None else " of {task.total:,}"
+            time_shown = TimeElapsedColumn() if total is None else TimeRemainingColumn()
+            columns = (TextColumn("{task.completed:,}" + f"{of} {what}"), BarColumn(), time_shown)
             bar = Progress(*columns, console=Console(stderr=True), transient=True)
             bar.start()
             bar.add_task("", total=total)

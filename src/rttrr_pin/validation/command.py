@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import click
+from rich.text import Text
 
 from rttrr_pin.errors import InputError
 from rttrr_pin.reporting.options import flag, outcome, robot, seed
@@ -53,6 +54,9 @@ def validate(states: int, json: str | None, quiet: bool, full: bool, **run: Any)
     write_json(json, result.to_dict)
     console = Output(quiet=quiet or json == "-", soft_wrap=False)
     show_validation(result, console, f"{options.command('state')} --index", full)
+    if not result.passed:
+        failed = next(k for k, one in enumerate(result.references) if not one.passed)
+        console.print(Text(f"why: {options.diagnosis(failed)}"), soft_wrap=True)
     return AGREE if result.passed else DISAGREE
 
 

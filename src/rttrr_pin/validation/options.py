@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import shlex
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -107,16 +107,38 @@ class RunOptions:
         robot = [] if self.robot == "rttrr" else [self.robot]
         return shlex.join(["rttrr-pin", name, *robot, *self.unusual(names)])
 
+    def diagnosis(self, reference: int) -> str:
+        """The command that says why the subject differs from one of the references, by its number."""
+        from rttrr_pin.implementations.table_files import READERS
+
+        table = Path(self.subject).suffix.lower() in READERS and Path(self.subject).is_file()
+        subject = [self.subject] if table else ["--subject", self.subject]
+        against = self.reference[reference]
+        words = ["--reference", against] if against != "kernel" else []
+        left_out = ("subject", "reference", "seed", "sampling")
+        same = self.unusual([own.name for own in fields(self)[1:] if own.name not in left_out])
+        return shlex.join(["rttrr-pin", "diagnose", self.robot, *subject, *words, *same])
+
     def check_target(self, target: str | None, files: Iterable[Path] = (), option: str = "--json") -> None:
         """The result can be written, and overwrites nothing that is read, nor a program."""
-        programs = (name for program in (self.subject, *self.reference) for name in files_of(program))
-        check_targets({option: target}, [self.robot, *programs, *files])
+        self._check_targets({option: target}, files)
 
-    def load(self, target: str | None, option: str = "--json") -> Robot:
-        """The robot, once the result can be written to this file without overwriting any of its own."""
-        self.check_target(target, option=option)
+    def _check_targets(self, targets: Mapping[str, str | None], files: Iterable[Path] = ()) -> None:
+        programs = (name for program in (self.subject, *self.reference) for name in files_of(program))
+        check_targets(targets, [self.robot, *programs, *files])
+
+    def load(self, target: str | None, option: str = "--json", others: Mapping[str, str | None] | None = None) -> Robot:
+        """The robot, once the results can be written to their files without overwriting any of its own.
+
+        Args:
+            target: where one is written, by `option`.
+            option: its name.
+            others: where others are written, by their options.
+        """
+        targets = {option: target, **(others or {})}
+        self._check_targets(targets)
         robot = self._load()
-        self.check_target(target, option=option)
+        self._check_targets(targets)
         return robot
 
     def _load(self) -> Robot:

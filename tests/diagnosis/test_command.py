@@ -1,0 +1,127 @@
+"""The command `diagnose`: what it refuses, what it writes, and where `validate` names it."""
+
+from __future__ import annotations
+
+import io
+import json
+import shlex
+import sys
+from pathlib import Path
+
+import pytest
+
+from rttrr_pin.cli import main
+from rttrr_pin.implementations import registry
+from rttrr_pin.reporting import output
+from support.serial_chains import EXAMPLES
+
+NO_MASS = (
+    '<robot name="x"><link name="base"/><link name="l"/><joint name="j" type="continuous"><parent link="base"/>'
+    '<child link="l"/><axis xyz="0 1 0"/></joint></robot>'
+)
+
+NAMES = [f"{key}_joint_1" for key in ("q", "v", "a", "tau")]
+HEADER = ",".join(NAMES)
+ROW = "0.1,0.2,0.3"
+
+ARM, STILL = "my arm.urdf", "support.implementations:still"
+
+TABLES = {
+    "empty": ("", "is empty: expected a header"),
+    "a header only": (f"{HEADER}\n", "has a header and no row"),
+    "no numbers": (f"{HEADER}\n{ROW},nan\n{ROW},nan\n", "no state has numbers"),
+    "a joint that is not there": (f"{HEADER},tau_elbow\n{ROW},1,2\n", "no column is called 'tau_elbow'"),
+    "no results": (f"q_joint_1,v_joint_1,a_joint_1\n{ROW}\n", "no column of results"),
+    "a log without numbers": ("time,q_joint_1,tau_joint_1\n" + "0.1,nan,nan\n" * 60, "error: "),
+    "a log of one row": (f"time,q_joint_1,tau_joint_1\n{ROW}\n", "error: "),
+    "a log of no row": ("time,q_joint_1,tau_joint_1\n", "error: "),
+}
+
+
+@pytest.fixture
+def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    """A folder with a robot whose name has a blank."""
+    (tmp_path / ARM).write_text(EXAMPLES["one-joint"])
+    (tmp_path / "no_joint.urdf").write_text('<robot name="x"><link name="base"/></robot>')
+    (tmp_path / "no_mass.urdf").write_text(NO_MASS)
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+@pytest.mark.parametrize("case", TABLES)
+def test_a_table_that_cannot_be_used_exits_2_with_one_sentence(
+    case: str, desk: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    text, message = TABLES[case]
+    (desk / "results.csv").write_text(text)
+    assert main(["diagnose", ARM, "results.csv"]) == 2
+    out, err = capsys.readouterr()
+    assert out == "" and message in err and err.count("\n") == 1
+
+
+@pytest.mark.parametrize(("robot", "message"), [("no_joint", "has no joint"), ("no_mass", "nothing was compared")])
+def test_a_robot_that_has_nothing_to_diagnose_exits_2(
+    robot: str, message: str, desk: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["diagnose", f"{robot}.urdf", "--subject", "recursion"]) == 2
+    out, err = capsys.readouterr()
+    assert out == "" and message in err and err.count("\n") == 1
+
+
+def test_a_table_of_one_row_is_diagnosed(desk: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (desk / "results.csv").write_text(f"{HEADER}\n{ROW},1000\n")
+    assert main(["diagnose", ARM, "results.csv"]) == 1
+    assert "1 states of the table" in capsys.readouterr().out
+
+
+def test_json_alone_or_nothing_is_printed(desk: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["diagnose", ARM, "--subject", STILL, "--states", "20", "--json", "-"]) == 1
+    out, err = capsys.readouterr()
+    data = json.loads(out)
+    assert err == "" and data["verdict"] == "explained" and data["residual_after"] <= 1.0 < data["residual_before"]
+    assert {"hypothesis", "link", "joint", "sentence", "values"} <= set(data["causes"][0])
+    assert main(["diagnose", ARM, "--subject", STILL, "--states", "20", "-q"]) == 1
+    assert capsys.readouterr() == ("", "")
+
+
+def test_hypotheses_are_counted_without_a_total(monkeypatch: pytest.MonkeyPatch) -> None:
+    """How many there are, and in how many sets they are tried, the search knows when it ends."""
+
+    class Terminal(io.StringIO):
+        def isatty(self) -> bool:
+            return True
+
+    monkeypatch.setattr(output, "SHOW_PROGRESS_AFTER", 0.0)
+    monkeypatch.setattr(sys, "stderr", terminal := Terminal())
+    monkeypatch.setenv("TERM", "xterm")
+    with output.progress(None, False, "hypotheses") as advance:
+        advance(4321)
+    assert "4,321 hypotheses" in terminal.getvalue() and " of " not in terminal.getvalue()
+
+
+@pytest.mark.parametrize("program", ["wrong", "results.csv"])
+def test_validate_names_the_command_that_says_why(
+    program: str, desk: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With the same robot, programs and reading of the file; it runs as it stands."""
+    monkeypatch.setitem(registry.BUILT_IN, "wrong", "support.implementations:Double")
+    (desk / "results.csv").write_text(f"{HEADER}\n{ROW},1000\n")
+    given = {"wrong": ["--gravity", "0,0,-1.6", "--base", "floating"], "results.csv": ["--lenient"]}[program]
+    words = ["validate", ARM, "--subject", program, "--states", "20", "--seed", "3", *given]
+    assert main(words) == 1
+    line = capsys.readouterr().out.splitlines()[-1]
+    assert line.startswith("why: rttrr-pin diagnose ")
+    command = shlex.split(line.removeprefix("why: rttrr-pin "))
+    subject = ["results.csv"] if program == "results.csv" else ["--subject", program]
+    assert command == ["diagnose", ARM, *subject, "--reference", "pinocchio", *given]
+    assert main([*command, "-q"]) == 1
+
+
+def test_validate_of_what_agrees_or_of_several_robots_names_none(
+    desk: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (desk / "no_joint.urdf").unlink()
+    (desk / "no_mass.urdf").unlink()
+    for robot in (ARM, "."):
+        main(["validate", robot, "--states", "5", "--subject", "recursion"])
+        assert "why:" not in capsys.readouterr().out
