@@ -14,11 +14,12 @@ from rttrr_pin.diagnosis.evidence import Evidence, flat, screened, spread
 from rttrr_pin.diagnosis.fitting import Explanation
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.predictions import Raw, applied, predicted, raw_changes
-from rttrr_pin.diagnosis.run import hypotheses_of
+from rttrr_pin.diagnosis.run import diagnose, hypotheses_of
 from rttrr_pin.diagnosis.search import Search
 from rttrr_pin.diagnosis.states import sample_states
 from rttrr_pin.diagnosis.variant import Variant
-from rttrr_pin.implementations import default_allowance
+from rttrr_pin.implementations import Batch, Evaluation, Implementation, default_allowance, make_implementation
+from rttrr_pin.implementations.allowance import of_printed
 from rttrr_pin.loading import load
 from rttrr_pin.robot import Robot
 from support.trees import random_tree
@@ -101,6 +102,26 @@ class Bench:
         sizes = rng.uniform(0.3, 3.0, len(steps)) * rng.choice([-1.0, 1.0], len(steps))
         return own, tuple(float(x + s * d) for x, s, d in zip(own.neutral, sizes, steps, strict=True))
 
+    @cached_property
+    def seen(self) -> list[Hypothesis]:
+        """The hypotheses that change a number of the sample by twice what rounding explains, at some numbers."""
+        least = 2.0 * self.rounding[screened(self.batch)].ravel()
+        return [own for own, change in self.raw if (np.abs(change) > least).any()]
+
+    def visible(self, size: int, rng: np.random.Generator, tries: int = 50) -> list[Fault]:
+        """So many different faults, each of which can be seen by itself."""
+        faults: list[Fault] = []
+        for k in rng.permutation(len(self.seen)).tolist():
+            for _ in range(tries):
+                fault = self.drawn(self.seen[k], rng)
+                change = np.abs(self.values([fault], rng) - self.expected)
+                if np.isfinite(change).all() and (change > 2.0 * self.rounding).any():
+                    faults.append(fault)
+                    break
+            if len(faults) == size:
+                break
+        return faults
+
     def judged(self, faults: Sequence[Fault], rng: np.random.Generator) -> Judged:
         """Plant faults, and look whether they are named."""
         return self.judged_values(self.values(faults, rng), faults)
@@ -134,3 +155,40 @@ def names(found: Explanation, faults: Sequence[Fault]) -> bool:
         return False
     slots = [{id(own), *map(id, alike)} for own, alike in zip(found.hypotheses, found.alike, strict=True)]
     return all(any(id(own) in slot for slot in slots) for own in planted)
+
+
+def clean_results(robot: Robot, states: int, seed: int) -> tuple[int, int]:
+    """How many right results were judged, and how many diagnoses called some of them wrong.
+
+    Those of Pinocchio and of the recursion, as they are and printed to six digits.
+    """
+    judged = false = 0
+    for source in ("pinocchio", "recursion"):
+        program = make_implementation(source, robot.model)
+        for digits in (17, 6):
+            result = diagnose(robot, Printed(program, digits), n_states=states, seed=seed)
+            judged += result.n_states
+            false += not result.passed
+    return judged, false
+
+
+class Printed:
+    """A program whose torques are printed, as a table of results is judged."""
+
+    def __init__(self, program: Implementation, digits: int) -> None:
+        self.program, self.digits = program, digits
+        self.name, self.version, self.quantities = f"{program.name} printed", program.version, ("tau",)
+
+    def evaluate(self, batch: Batch) -> Evaluation:
+        """Driving forces; half a unit in the last digit is allowed beside their rounding."""
+        result = self.program.evaluate(batch)
+        if self.digits >= 17:
+            return Evaluation(
+                {"tau": result.values["tau"]}, {"tau": result.allowance["tau"]} if result.allowance else None
+            )
+        texts = [f"{x:.{self.digits - 1}e}" for x in result.values["tau"].ravel()]
+        shape = result.values["tau"].shape
+        halves = np.array([0.5 * 10.0 ** (int(text.partition("e")[2]) - self.digits + 1) for text in texts])
+        return Evaluation(
+            {"tau": np.array(texts, float).reshape(shape)}, of_printed(batch, {"tau": halves.reshape(shape)})
+        )
