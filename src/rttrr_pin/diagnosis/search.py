@@ -27,6 +27,7 @@ from rttrr_pin.diagnosis.predictions import (
     raw_changes,
     visible_changes,
 )
+from rttrr_pin.diagnosis.spans import basis, distance, left_by, rest_of
 from rttrr_pin.diagnosis.variant import Variant
 
 CONFIRMED = 40
@@ -55,6 +56,12 @@ FAR = 100.0
 
 FAR_STARTS = (-10.0, -6.0, -3.5, -2.0, -1.0, -0.5, 0.5, 2.0, 3.5, 6.0, 10.0)
 """Times the first step of a number that does not enter linearly: from the best of these its fit begins again."""
+
+NEARER = 0.7
+"""It does if that leaves less than this part of the difference."""
+
+LINEAR = 1e-6
+"""Relative: a change that far away is as near to so many times the first step is linear."""
 
 HIDDEN = 0.01
 """If the largest difference of the sample is less than this part of the largest, the worst states are taken in."""
@@ -145,7 +152,7 @@ class Search:
 
     def _rank(self, before: tuple[Change, ...], one: Change, target: Array | None = None) -> Candidate:
         """A hypothesis more, by how much of the difference is left."""
-        return _left(self.target if target is None else target, one) / self.size, (*before, one)
+        return left_by(self.target if target is None else target, one) / self.size, (*before, one)
 
     def _far(self, singles: Sequence[Change]) -> list[Explanation]:
         """Hypotheses with one number that does not enter linearly, fitted from the best of numbers far and near."""
@@ -156,13 +163,22 @@ class Search:
                 continue
             (neutral,), (start,) = hypothesis.neutral, hypothesis.start
             numbers = [neutral + times * (start - neutral) for times in FAR_STARTS]
+            if self._linear(own, numbers[0]):
+                continue
             tried = [self.fitting.judged((hypothesis,), (x,), self.sample) for x in numbers]
             best = min(tried, key=lambda one: one.left)
-            if best.left < 1.0:
+            if best.left < NEARER:
                 fit = self.fitting.fit((hypothesis,), self.sample, best.numbers)
                 if fit.explains:
                     found.append(self.fitting.on_all(fit, (own.alike,)))
         return found
+
+    def _linear(self, own: Change, number: float) -> bool:
+        """Whether a change far away is as many times as large."""
+        predicted_there = predicted(own.hypothesis.apply(self.base, (number,)), self.sample)
+        change = ((predicted_there - self.sample.expected) / self.scale).ravel()
+        expected = own.change[0] * (number - own.hypothesis.neutral[0])
+        return bool(np.linalg.norm(change - expected) <= LINEAR * np.linalg.norm(expected))
 
     def _sums(self, singles: Sequence[Change]) -> list[Candidate]:
         """Pairs by the sum of their changes."""
@@ -179,7 +195,7 @@ class Search:
                 if np.isfinite(square[i, j]):
                     found.append((_root(square[i, j]) / self.size, (fixed[i], fixed[j])))
         for n, own in enumerate(free):
-            Q = _basis(own.change)
+            Q = basis(own.change)
             target = self.target - Q @ (Q.T @ self.target)
             if fixed:
                 rest = target - (A - (A @ Q) @ Q.T)
@@ -187,7 +203,7 @@ class Search:
                 found += [(float(lengths[k]) / self.size, (own, fixed[k])) for k in np.argsort(lengths)[:4]]
             for other in free[n + 1 :]:
                 projected = other.change - (other.change @ Q) @ Q.T
-                found.append((_distance(target, projected) / self.size, (own, other)))
+                found.append((distance(target, projected) / self.size, (own, other)))
         return sorted(found, key=_order)
 
     def _conventions(self, singles: Sequence[Change]) -> list[Candidate]:
@@ -267,7 +283,7 @@ class Search:
         """Whether a change, which is known as it is, leaves far more than rounding."""
         if one.fitted and one.hypothesis.parameters is None:
             return False  # it may not be linear
-        rest = self.target - one.change if not one.fitted else _rest(self.target, one.change)
+        rest = self.target - one.change if not one.fitted else rest_of(self.target, one.change)
         allowed = (self.sample.tolerance + self.sample.rounding) / self.scale
         larger = np.broadcast_to(growth(self.sample.values, self.sample.expected), allowed.shape)
         return bool((np.abs(rest) > FAR * larger.ravel() * allowed.ravel()).any())
@@ -287,31 +303,6 @@ def _general(own: Hypothesis) -> bool:
 def _order(candidate: Candidate) -> tuple[float, int]:
     left, own = candidate
     return round(left, 9), sum(one.fitted for one in own)
-
-
-def _left(target: Array, one: Change) -> float:
-    """The length of what a change leaves of a difference, its numbers fitted."""
-    if not one.fitted:
-        return float(np.linalg.norm(target - one.change))
-    return _distance(target, one.change)
-
-
-def _distance(target: Array, rows: Array) -> float:
-    """How far a vector is from the span of some."""
-    return float(np.linalg.norm(_rest(target, rows)))
-
-
-def _rest(target: Array, rows: Array) -> Array:
-    """What is left of a vector without what lies in the span of some."""
-    Q = _basis(rows)
-    return np.asarray(target - Q @ (Q.T @ target))
-
-
-def _basis(rows: Array) -> Array:
-    """An orthonormal basis of what some vectors span, (numbers, rank)."""
-    lengths = np.linalg.norm(rows, axis=1)
-    U, sigma, _ = np.linalg.svd((rows[lengths > 0.0] / lengths[lengths > 0.0, None]).T, full_matrices=False)
-    return np.asarray(U[:, sigma > 1e-10 * sigma.max(initial=0.0)])
 
 
 def _root(square: float) -> float:
