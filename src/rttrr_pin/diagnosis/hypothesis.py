@@ -8,6 +8,7 @@ from typing import Any, Literal
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
+from rttrr_pin.diagnosis.mutations import Mutation
 from rttrr_pin.diagnosis.variant import Variant
 
 Kind = Literal["convention", "parameters", "joint", "mechanics"]
@@ -40,6 +41,7 @@ class Hypothesis:
         values: fitted numbers as a reader wants them.
         equation: of the paper, where the error is in one; else empty.
         line: the line of code or of the file to look at; else empty.
+        mutation: the error in the recursion that it is, where it is no more than that; `apply` adds it.
     """
 
     id: str
@@ -55,6 +57,7 @@ class Hypothesis:
     values: Told = field(default=lambda x: {})
     equation: str = ""
     line: str = ""
+    mutation: Mutation | None = None
 
 
 Catalogue = Callable[[Model], list[Hypothesis]]

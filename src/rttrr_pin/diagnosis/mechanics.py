@@ -61,6 +61,7 @@ def hypothesis(error: Mutation, model: Model, link: int | None = None) -> Hypoth
         joint=None if link is None else model.joints[link].name,
         equation=next((found[1] for found in equations if found), ""),
         line=f"{error.file}:{error.line}  {code}",
+        mutation=error,
     )
 
 

@@ -177,28 +177,28 @@ def _mutated(mutations: tuple[Mutation, ...]) -> Dynamics:
     outer = _namespace(dynamics, mutations)
     steps = {
         link: {
-            inner[name]: _copied(functions()[name], some, inner)
+            inner[name]: copied(functions()[name], some, inner)
             for name in STEPS
             if any(one.function == name and one.link == link for one in some)
         }
         for link, some in own.items()
     }
-    types = {link: _JointTypes(some) for link, some in own.items()}
-    outer["newton_euler"] = _with_errors(inner["newton_euler"], steps, types, _JointTypes(everywhere))
+    types = {link: JointTypes(some) for link, some in own.items()}
+    outer["newton_euler"] = _with_errors(inner["newton_euler"], steps, types, JointTypes(everywhere))
     return outer["dynamics"]  # type: ignore[no-any-return]
 
 
 def _with_errors(
     recursion: Callable[..., newton_euler.Wrenches],
     steps: Mapping[int, Mapping[Any, Any]],
-    types: Mapping[int, _JointTypes],
-    others: _JointTypes,
+    types: Mapping[int, JointTypes],
+    others: JointTypes,
 ) -> Callable[..., newton_euler.Wrenches]:
     """The recursion with joint types that have errors, and with steps that have them at some links alone."""
 
     def run(bodies: Sequence[Body], *arguments: Any) -> newton_euler.Wrenches:
         *rest, call = arguments
-        own = [_body(body, types.get(k, others), k in steps) for k, body in enumerate(bodies)]
+        own = [body_with(body, types.get(k, others), k in steps) for k, body in enumerate(bodies)]
         wrong = {
             (step, id(own[k])): other for k, pairs in steps.items() if k < len(own) for step, other in pairs.items()
         }
@@ -211,20 +211,20 @@ def _with_errors(
     return run
 
 
-def _body(body: Body, types: _JointTypes, unique: bool) -> Body:
+def body_with(body: Body, types: JointTypes, unique: bool = False) -> Body:
     """The link on a joint whose type has errors; if need be one that no other link is."""
     kind = types.of(body.type)
     return replace(body, type=kind) if unique or kind is not body.type else body
 
 
-class _JointTypes:
+class JointTypes:
     """Joint types with errors."""
 
     def __init__(self, mutations: Sequence[Mutation]) -> None:
         self.mutations = [one for one in mutations if "." in one.function]
         names = {one.function for one in mutations}.intersection(ALGEBRA)
         namespace = vars(algebra)
-        self.rotations = {namespace[x]: _copied(namespace[x], mutations, namespace) for x in names}
+        self.rotations = {namespace[x]: copied(namespace[x], mutations, namespace) for x in names}
         self.known: dict[JointType, JointType] = {}
 
     def of(self, kind: JointType) -> JointType:
@@ -242,7 +242,7 @@ class _JointTypes:
             method: Any = getattr(type(kind), name)
             used = {key: self.rotations[x] for key, x in method.__globals__.items() if _in(x, self.rotations)}
             if used or any(one.function == method.__qualname__ for one in self.mutations):
-                methods[name] = _copied(method, self.mutations, {**method.__globals__, **used})
+                methods[name] = copied(method, self.mutations, {**method.__globals__, **used})
         if not methods:
             return kind
         altered = copy.copy(kind)
@@ -259,11 +259,11 @@ def _namespace(module: ModuleType, mutations: Sequence[Mutation]) -> dict[str, A
     namespace = dict(vars(module))
     for name, function in vars(module).items():
         if inspect.isfunction(function) and function.__module__ == module.__name__:
-            namespace[name] = _copied(function, mutations, namespace)
+            namespace[name] = copied(function, mutations, namespace)
     return namespace
 
 
-def _copied(function: FunctionType, mutations: Sequence[Mutation], namespace: dict[str, Any]) -> FunctionType:
+def copied(function: FunctionType, mutations: Sequence[Mutation], namespace: dict[str, Any]) -> FunctionType:
     """The function with its errors over a namespace."""
     own = [one for one in mutations if one.function == function.__qualname__]
     code = compiled(function.__qualname__, own) if own else function.__code__

@@ -13,6 +13,7 @@ from rttrr_pin.core.model import Link, Model
 from rttrr_pin.diagnosis.evidence import Evidence, flat, joined, shape_of_loads
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.mutations import Mutation
+from rttrr_pin.diagnosis.simultaneous import together
 from rttrr_pin.diagnosis.variant import Values, Variant, run
 from rttrr_pin.implementations.protocol import Batch
 
@@ -54,9 +55,15 @@ def raw_changes(outer: Variant, hypotheses: Sequence[Hypothesis], evidence: Evid
     """What each hypothesis changes on top of a program, whatever was seen; those that do not compute are left out."""
     base = predicted(outer, evidence)
     columns: Array | None = None
+    errors = [own.mutation for own in hypotheses if own.mutation is not None]
+    wrong = together(errors, outer.model, outer.given(evidence.batch), outer.mutations)
     found: list[Raw] = []
     for own in hypotheses:
-        if own.parameters is not None:
+        if own.mutation is not None:
+            values = flat(_through(outer, evidence.batch, next(wrong)), evidence.quantities)
+            with np.errstate(invalid="ignore"):
+                change = (values - base).ravel()
+        elif own.parameters is not None:
             if columns is None:
                 columns = parameter_columns(outer, evidence)
             change = own.parameters @ columns

@@ -10,8 +10,9 @@ import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import split_columns
-from rttrr_pin.core.dynamics import Result, dynamics
+from rttrr_pin.core.dynamics import Result, bodies
 from rttrr_pin.core.model import Model
+from rttrr_pin.core.newton_euler import Call
 from rttrr_pin.core.payload import payloads_of
 from rttrr_pin.core.scalars import FLOAT, columns
 from rttrr_pin.core.wrench import QUANTITIES
@@ -71,13 +72,13 @@ class Variant:
         return batch
 
 
-def run(model: Model, batch: Batch, mutations: Sequence[Mutation] = ()) -> Values:
+def run(model: Model, batch: Batch, mutations: Sequence[Mutation] = (), call: Call = FLOAT.call) -> Values:
     """The recursion on a batch, of one state or many; what overflows is not finite."""
-    compute = mutated(mutations) if mutations else dynamics
+    links, arithmetic = bodies(model, FLOAT), replace(FLOAT, call=call)
     rows = len(batch)
     q, v, a = (columns(x) for x in (batch.q, batch.v, batch.a))
     with np.errstate(all="ignore"):
-        result: Result = compute(model, FLOAT, q, v, a, payloads_of(batch.loads, FLOAT))
+        result: Result = mutated(mutations)(model, arithmetic, q, v, a, payloads_of(batch.loads, FLOAT), links)
         numbers: list[Any] = result.scalars()
         table = np.empty((rows, len(numbers)))
         for column, x in zip(table.T, numbers, strict=True):
