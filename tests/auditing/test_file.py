@@ -197,6 +197,7 @@ def test_a_spelling_that_is_no_symbol_names_the_file(tmp_path, spelling) -> None
         ('gravity = ["0", "-g", "0"]', 'gravity = ["0", "-g"]', "expected 3"),
         ('language = "latex"', 'language = "tex"', "expected"),
         ("k = [1, 2]", "k = [1, 1]", "declared twice"),
+        ('latex = ["m_<k>"]', "latex = []", "leave it out"),
         ("[robot]", "[robot", "TOML"),
         ('joint = 2', 'joint = 1', "leave one"),
     ],

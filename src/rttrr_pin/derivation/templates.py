@@ -42,11 +42,13 @@ def declarations(table: Table, links: int, latex: bool) -> Iterator[Declaration]
     """The symbols that an entry of [[symbol]] stands for; `<i>` runs over so many links.
 
     Raises:
-        EquationError: the entry lacks a name or has a dimension that does not exist.
+        EquationError: the entry lacks a name or a spelling, or has a dimension that does not exist.
     """
     table.only(KEYS)
     name = table.get("name", str)
     spellings = table.texts("latex", default=[name])
+    if not spellings:
+        raise table.error("latex is []: leave it out, and the name stands for itself")
     if any(len(text) > LONGEST_TEXT for text in (name, *spellings)):
         raise table.error(f"has a text of more than {LONGEST_TEXT} characters: no symbol is printed so")
     dimension = table.get("dimension", str)
