@@ -21,6 +21,9 @@ CLOSE = 4.0
 COMBINED = 64
 """Of sets that are alike on the sample, so many are computed on all states."""
 
+EQUATIONS = 3
+"""Results for each fitted number, at least."""
+
 ITERATIONS = 8
 """Of a fit, which is nearly linear."""
 
@@ -152,6 +155,8 @@ class Fitting:
         """How far a set goes."""
         values = predicted(applied(self.base, hypotheses, numbers), evidence)
         worst = float(evidence.of_tolerance(values, growth(values, evidence.expected)).max(initial=0.0))
+        if EQUATIONS * len(numbers) > evidence.values.size:
+            worst = np.inf  # so many numbers explain anything
         with np.errstate(over="ignore", invalid="ignore"):
             sizes = [float(np.linalg.norm(x / self.scale)) for x in (evidence.values - values, evidence.difference)]
         left = sizes[0] / sizes[1] if sizes[1] else 0.0

@@ -41,6 +41,9 @@ from rttrr_pin.validation.states import model_of
 NEAR_MISSES, LEAST = 5, 0.1
 """So many are told, of those that explain this part at least."""
 
+BARELY = 10.0
+"""Times what rounding explains: a smaller difference tells causes apart badly."""
+
 OTHERS = 10
 """Other sets that are told."""
 
@@ -117,17 +120,22 @@ def _diagnosed(
     evidence = _evidence(batch, results, shared)
     both = _between(*evidence)
     before = both.of_tolerance(both.expected)
+    differs = bool((before > 1.0).any())
     found = _Found()
-    if (before > 1.0).any():
+    if differs:
         found = _explained(programs, evidence, progress)
         found.dependence = () if found.causes else dependence(programs, both)
+        if before.max() < BARELY:
+            notes.append("the difference is barely more than rounding explains: many a cause would be as good")
+    elif notes:
+        found.dependence = (*notes, "in all other states it is rounding")
     after = both.difference - (found.changes if found.causes else 0.0)
     left = np.abs(after) / (both.tolerance + both.rounding) if found.causes else before
     return Diagnosis(
         robot=model.name,
         subject=label(programs[0]),
         reference=label(programs[1]),
-        verdict="agrees" if (before <= 1.0).all() else "explained" if found.causes else "unexplained",
+        verdict="explained" if found.causes else "unexplained" if differs or found.dependence else "agrees",
         causes=tuple(found.causes),
         others=tuple(found.others),
         residuals=_residuals(both, after, before, left),
@@ -135,7 +143,7 @@ def _diagnosed(
         residual_after=float(left.max(initial=0.0)),
         dependence=found.dependence,
         near_misses=tuple(sorted(found.near, key=lambda near: -near.explains)[:NEAR_MISSES]),
-        counterexample=counterexample(programs, both) if (before > 1.0).any() else "",
+        counterexample=counterexample(programs, both) if differs else "",
         n_states=len(batch),
         sampling=sampling,
         tried=found.tried,
