@@ -12,7 +12,7 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.diagnosis.evidence import Evidence
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.minimax import minimax
-from rttrr_pin.diagnosis.predictions import applied, jacobian, predicted
+from rttrr_pin.diagnosis.predictions import applied, jacobian, predicted, predicted_all
 from rttrr_pin.diagnosis.variant import Variant
 
 CLOSE = 4.0
@@ -153,7 +153,19 @@ class Fitting:
 
     def judged(self, hypotheses: tuple[Hypothesis, ...], numbers: Sequence[float], evidence: Evidence) -> Explanation:
         """How far a set goes."""
-        values = predicted(applied(self.base, hypotheses, numbers), evidence)
+        return self.judged_all(hypotheses, [numbers], evidence)[0]
+
+    def judged_all(
+        self, hypotheses: tuple[Hypothesis, ...], every: Sequence[Sequence[float]], evidence: Evidence
+    ) -> list[Explanation]:
+        """How far a set goes with each of several choices of its numbers."""
+        results = predicted_all([applied(self.base, hypotheses, numbers) for numbers in every], evidence)
+        return [self._of_values(hypotheses, x, values, evidence) for x, values in zip(every, results, strict=True)]
+
+    def _of_values(
+        self, hypotheses: tuple[Hypothesis, ...], numbers: Sequence[float], values: Array, evidence: Evidence
+    ) -> Explanation:
+        """How far a set goes that computes these results."""
         worst = float(evidence.of_tolerance(values, growth(values, evidence.expected)).max(initial=0.0))
         if EQUATIONS * len(numbers) > evidence.values.size:
             worst = np.inf  # so many numbers explain anything

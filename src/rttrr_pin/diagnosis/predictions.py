@@ -8,17 +8,35 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from rttrr_pin.core.algebra import ZERO, Matrix, Vector
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.model import Link, Model
-from rttrr_pin.diagnosis.evidence import Evidence, flat, joined, shape_of_loads
+from rttrr_pin.core.dynamics import bodies
+from rttrr_pin.core.scalars import FLOAT
+from rttrr_pin.diagnosis.evidence import Evidence, flat
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
-from rttrr_pin.diagnosis.mutations import Mutation
+from rttrr_pin.diagnosis.side_by_side import Program, evaluate_all, run_all
 from rttrr_pin.diagnosis.simultaneous import together
-from rttrr_pin.diagnosis.variant import Values, Variant, run
-from rttrr_pin.implementations.protocol import Batch
+from rttrr_pin.diagnosis.variant import Values, Variant
 
-TENSORS = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))
+ENTRIES = ((0, 0), (0, 1), (1, 1), (0, 2), (1, 2), (2, 2))
 """The entries of a tensor in the order of the parameters."""
+
+NOTHING = Matrix((ZERO, ZERO, ZERO))
+
+
+def _entry(r: int, s: int) -> Array:
+    """A symmetric matrix with 1 there."""
+    unit = np.zeros((3, 3))
+    unit[r, s] = unit[s, r] = 1.0
+    return unit
+
+
+UNITS = (
+    (1.0, np.zeros(3), np.zeros((3, 3))),
+    *((1.0, c, np.outer(c, c) - np.eye(3)) for c in np.eye(3)),  # about the origin they have no tensor
+    *((0.0, np.zeros(3), _entry(r, s)) for r, s in ENTRIES),
+)
+"""Mass, centre of mass and tensor about it, of a body whose parameters are one of the ten, or that and a mass."""
 
 MARKED = 1e-6
 """Relative: only changes whose projections on one random direction are as near are compared number by number."""
@@ -53,28 +71,38 @@ Raw = tuple[Hypothesis, Array]
 
 def raw_changes(outer: Variant, hypotheses: Sequence[Hypothesis], evidence: Evidence) -> list[Raw]:
     """What each hypothesis changes on top of a program, whatever was seen; those that do not compute are left out."""
-    base = predicted(outer, evidence)
-    columns: Array | None = None
     errors = [own.mutation for own in hypotheses if own.mutation is not None]
     wrong = together(errors, outer.model, outer.given(evidence.batch), outer.mutations)
+    others = [own for own in hypotheses if own.mutation is None and own.parameters is None]
+    moved = {id(own): _steps(own) for own in others if own.start}
+    variants = [outer]
+    for own in others:
+        variants += (
+            [own.apply(outer, numbers) for numbers, _ in moved[id(own)]] if own.start else [own.apply(outer, ())]
+        )
+    base, *computed = predicted_all(variants, evidence)
+    results = iter(computed)
+    any_parameters = any(own.parameters is not None for own in hypotheses)
+    columns = parameter_columns([outer], evidence)[0] if any_parameters else np.empty((0, 0))
     found: list[Raw] = []
     for own in hypotheses:
-        if own.mutation is not None:
-            values = flat(_through(outer, evidence.batch, next(wrong)), evidence.quantities)
-            with np.errstate(invalid="ignore"):
-                change = (values - base).ravel()
-        elif own.parameters is not None:
-            if columns is None:
-                columns = parameter_columns(outer, evidence)
-            change = own.parameters @ columns
-        elif own.start:
-            change = jacobian(outer, [own], own.neutral, own.start, evidence, base)
-        else:
-            with np.errstate(invalid="ignore"):
-                change = (predicted(own.apply(outer, ()), evidence) - base).ravel()
+        with np.errstate(invalid="ignore"):
+            if own.mutation is not None:
+                change = (flat(outer.shown(evidence.batch, next(wrong)), evidence.quantities) - base).ravel()
+            elif own.parameters is not None:
+                change = own.parameters @ columns
+            elif own.start:
+                change = np.array([(next(results) - base).ravel() / step for _, step in moved[id(own)]])
+            else:
+                change = (next(results) - base).ravel()
         if np.isfinite(change).all():
             found.append((own, change))
     return found
+
+
+def _steps(own: Hypothesis) -> list[tuple[tuple[float, ...], float]]:
+    """The numbers with one of them moved towards the start, and by how much, one after the other."""
+    return list(_moved(own.neutral, own.start))
 
 
 def visible_changes(raw: Sequence[Raw], evidence: Evidence, scale: Array) -> list[Change]:
@@ -88,6 +116,11 @@ def predicted(variant: Variant, evidence: Evidence) -> Array:
     return flat(variant.evaluate(evidence.batch), evidence.quantities)
 
 
+def predicted_all(variants: Sequence[Variant], evidence: Evidence) -> list[Array]:
+    """What each of several programs computes at the states, (N, numbers)."""
+    return [flat(values, evidence.quantities) for values in evaluate_all(variants, evidence.batch)]
+
+
 def jacobian(
     outer: Variant,
     hypotheses: Sequence[Hypothesis],
@@ -97,13 +130,17 @@ def jacobian(
     base: Array,
 ) -> Array:
     """By secants, how the results change with each fitted number, (fitted, numbers); `base` is what they are there."""
-    rows = []
+    steps = list(_moved(at, towards))
+    values = predicted_all([applied(outer, hypotheses, numbers) for numbers, _ in steps], evidence)
+    rows = [(own - base).ravel() / step for own, (_, step) in zip(values, steps, strict=True)]
+    return np.array(rows).reshape(len(at), -1)
+
+
+def _moved(at: Sequence[float], towards: Sequence[float]) -> Iterator[tuple[tuple[float, ...], float]]:
+    """The numbers with one of them moved, and by how much, one after the other."""
     for k, (x, y) in enumerate(zip(at, towards, strict=True)):
         step = y - x or 1e-6 * max(1.0, abs(x))
-        moved = [*at]
-        moved[k] = x + step
-        rows.append((predicted(applied(outer, hypotheses, moved), evidence) - base).ravel() / step)
-    return np.array(rows).reshape(len(at), -1)
+        yield (*at[:k], x + step, *at[k + 1 :]), step
 
 
 def applied(outer: Variant, hypotheses: Sequence[Hypothesis], numbers: Sequence[float]) -> Variant:
@@ -116,40 +153,45 @@ def applied(outer: Variant, hypotheses: Sequence[Hypothesis], numbers: Sequence[
     return outer
 
 
-def parameter_columns(outer: Variant, evidence: Evidence) -> Array:
-    """The change by each inertial parameter, (10 links, numbers), in the order of `Robot.inertial_parameters`."""
-    return Stack([outer], evidence).parameter_columns()[0]
+def parameter_columns(outers: Sequence[Variant], evidence: Evidence) -> list[Array]:
+    """The change by each inertial parameter on top of each program, (10 links, numbers).
 
-
-def _through(outer: Variant, batch: Batch, values: Values) -> Values:
-    for own in outer.outputs:
-        values = own(batch, values)
-    return values
-
-
-def _of_bodies(model: Model, batch: Batch, mutations: Sequence[Mutation]) -> Iterator[Values]:
-    """What a unit of each parameter of each link gives: of mass, first moment and tensor about the origin.
-
-    Of a robot that has this one body alone: no difference of large numbers.
+    In the order of `Robot.inertial_parameters`. Of a robot that has one body alone, whose parameter is 1: no
+    difference of large numbers.
     """
-    alone = model.without_joint_effects()
+    programs: list[Program] = []
+    for outer in outers:
+        bare = replace(outer.given(evidence.batch), loads=())
+        alone = outer.model.without_joint_effects()
+        empty = [replace(own, M=0.0, r_C=ZERO, I=NOTHING) for own in bodies(outer.model, FLOAT)]
+        for i, body in enumerate(empty):
+            for m, c, tensor in UNITS:
+                links = [*empty[:i], replace(body, M=m, r_C=Vector.of(c), I=Matrix.of(tensor)), *empty[i + 1 :]]
+                programs.append(Program(alone, links, bare, outer.mutations))
+    results = iter(run_all(programs))
+    whole = iter(evaluate_all([replace(own, outputs=()) for own in outers if own.outputs], evidence.batch))
+    found = []
+    for outer in outers:
+        own = [_of_unit(next(results) for _ in UNITS) for _ in outer.model.links]
+        columns = [values for link in own for values in link]
+        base = next(whole) if outer.outputs else None
+        found.append(np.array([_shown(outer, values, base, evidence).ravel() for values in columns]))
+    return found
 
-    def of(i: int, m: float, c: Array, J: Array) -> Values:
-        links = [Link(own.name) for own in model.links]
-        links[i] = Link(links[i].name, m, c, J)
-        return run(replace(alone, links=tuple(links)), batch, mutations)
 
-    nothing, none = np.zeros(3), np.zeros((3, 3))
-    for i in range(len(model.links)):
-        of_mass = of(i, 1.0, nothing, none)
-        yield of_mass
-        for c in np.eye(3):
-            centred = of(i, 1.0, c, -(np.eye(3) - np.outer(c, c)))  # about the origin it has no tensor
-            yield {key: x - of_mass[key] for key, x in centred.items()}
-        for r, s in TENSORS:
-            J = none.copy()
-            J[r, s] = J[s, r] = 1.0
-            yield of(i, 0.0, nothing, J)
+def _of_unit(results: Iterator[Values]) -> list[Values]:
+    """The ten columns of a link: a first moment is what a mass beside the origin has more than one in it."""
+    of_mass, *others = results
+    moments = [{key: x - of_mass[key] for key, x in own.items()} for own in others[:3]]
+    return [of_mass, *moments, *others[3:]]
+
+
+def _shown(outer: Variant, change: Values, base: Values | None, evidence: Evidence) -> Array:
+    """The change of what a program shows, which need not be linear in what it computes."""
+    if base is None:
+        return flat(change, evidence.quantities)
+    moved = outer.shown(evidence.batch, {key: base[key] + x for key, x in change.items()})
+    return flat(moved, evidence.quantities) - flat(outer.shown(evidence.batch, base), evidence.quantities)
 
 
 def _distinct(found: list[Change]) -> list[Change]:
@@ -181,52 +223,3 @@ def _same(direction: Array, other: Change) -> bool:
         y = y / np.linalg.norm(y)
         y = y if direction @ y > 0.0 else -y
     return bool(np.linalg.norm(direction - y) <= ALIKE * np.linalg.norm(y))
-
-
-class Stack:
-    """Programs that differ in input and output alone, evaluated together."""
-
-    def __init__(self, outers: Sequence[Variant], evidence: Evidence) -> None:
-        self.outers, self.evidence = outers, evidence
-        self.given = [own.given(evidence.batch) for own in outers]
-        groups: dict[tuple[tuple[int, bool], ...], list[int]] = {}
-        for k, batch in enumerate(self.given):
-            groups.setdefault(shape_of_loads(batch), []).append(k)
-        self.groups = [(members, joined([self.given[k] for k in members])) for members in groups.values()]
-
-    def predicted(self, hypothesis: Hypothesis, base: Variant) -> list[Array]:
-        """What each of them computes under a hypothesis that alters numbers or the recursion, (N, numbers) each."""
-        own = hypothesis.apply(base, ())
-        out: list[Array] = [np.empty(0)] * len(self.outers)
-        for members, batch in self.groups:
-            values = run(own.model, batch, own.mutations)
-            for place, k in enumerate(members):
-                out[k] = self._shown(k, self._slice(values, place))
-        return out
-
-    def parameter_columns(self) -> list[Array]:
-        """The change by each inertial parameter, of each of them, (10 links, numbers)."""
-        first = self.outers[0]
-        rows: list[list[Array]] = [[] for _ in self.outers]
-        for members, batch in self.groups:
-            base = run(first.model, batch, first.mutations)
-            before = [self._slice(base, place) for place in range(len(members))]
-            shown = [self._shown(k, own) for k, own in zip(members, before, strict=True)]
-            for values in _of_bodies(first.model, replace(batch, loads=()), first.mutations):
-                for place, k in enumerate(members):
-                    own = self._slice(values, place)
-                    if self.outers[k].outputs:  # which need not be linear
-                        own = {key: before[place][key] + x for key, x in own.items()}
-                        rows[k].append((self._shown(k, own) - shown[place]).ravel())
-                    else:
-                        rows[k].append(flat(own, self.evidence.quantities).ravel())
-        return [np.array(own) for own in rows]
-
-    def _slice(self, values: Values, place: int) -> Values:
-        """The part of one program."""
-        rows = len(self.evidence.batch)
-        return {key: x[place * rows : (place + 1) * rows] for key, x in values.items()}
-
-    def _shown(self, k: int, values: Values) -> Array:
-        """What a program makes of its results."""
-        return flat(_through(self.outers[k], self.evidence.batch, values), self.evidence.quantities)

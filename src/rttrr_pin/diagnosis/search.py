@@ -21,13 +21,14 @@ from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.predictions import (
     Change,
     Raw,
-    Stack,
     applied,
+    parameter_columns,
     predicted,
+    predicted_all,
     raw_changes,
     visible_changes,
 )
-from rttrr_pin.diagnosis.spans import basis, distance, left_by, rest_of
+from rttrr_pin.diagnosis.spans import basis, distance, left_by, left_by_each, rest_of
 from rttrr_pin.diagnosis.variant import Variant
 
 CONFIRMED = 40
@@ -165,7 +166,7 @@ class Search:
             numbers = [neutral + times * (start - neutral) for times in FAR_STARTS]
             if self._linear(own, numbers[0]):
                 continue
-            tried = [self.fitting.judged((hypothesis,), (x,), self.sample) for x in numbers]
+            tried = self.fitting.judged_all((hypothesis,), [(x,) for x in numbers], self.sample)
             best = min(tried, key=lambda one: one.left)
             if best.left < NEARER:
                 fit = self.fitting.fit((hypothesis,), self.sample, best.numbers)
@@ -208,30 +209,32 @@ class Search:
 
     def _conventions(self, singles: Sequence[Change]) -> list[Candidate]:
         """What alters numbers or the recursion at all links, on top of each convention."""
-        inner = [own for own in self.hypotheses if _general(own)]
         outers = [own for own in singles if own.hypothesis.kind == "convention"]
-        variants = [self._alone(own) for own in outers]
-        pairs = [(own, variant) for own, variant in zip(outers, variants, strict=True) if variant is not None]
-        if not pairs:
+        alone = [(own, variant) for own in outers if (variant := self._alone(own)) is not None]
+        if not alone:
             return []
         found: list[Candidate] = []
-        stack = Stack([variant for _, variant in pairs], self.sample)
-        without = [predicted(variant, self.sample) for _, variant in pairs]
-        for own in inner:
-            if own.start or own.parameters is not None:
+        variants = [variant for _, variant in alone]
+        without = predicted_all(variants, self.sample)
+        for own in self.hypotheses:
+            if not _general(own) or own.start or own.parameters is not None:
                 continue
-            for (outer, _), values, base in zip(pairs, stack.predicted(own, self.base), without, strict=True):
-                change = ((values - base) / self.scale).ravel()
-                rest = (self.sample.values - values) / self.scale
+            applied_to = predicted_all([own.apply(variant, ()) for variant in variants], self.sample)
+            for (outer, _), values, base in zip(alone, applied_to, without, strict=True):
+                with np.errstate(invalid="ignore", over="ignore"):
+                    change = ((values - base) / self.scale).ravel()
+                    left = float(np.linalg.norm((self.sample.values - values) / self.scale)) / self.size
                 if np.isfinite(change).all():
-                    found.append((float(np.linalg.norm(rest)) / self.size, (outer, Change(own, change))))
+                    found.append((left, (outer, Change(own, change))))
             self.tried += 1
-        for (outer, _), base, raw in zip(pairs, without, stack.parameter_columns(), strict=True):
+        parts = [(own, own.parameters) for own in self.hypotheses if len(own.start) <= 1]
+        few = [(own, direction.ravel()) for own, direction in parts if direction is not None]
+        fitted = [len(own.start) for own, _ in few]
+        for (outer, _), base, columns in zip(alone, without, parameter_columns(variants, self.sample), strict=True):
             target = ((self.sample.values - base) / self.scale).ravel()
-            columns = raw / self.scale.ravel()
-            for own in self.hypotheses:
-                if own.parameters is not None:
-                    found.append(self._rank((outer,), Change(own, own.parameters @ columns), target))
+            rows = np.array([direction for _, direction in few]) @ (columns / self.scale.ravel())
+            for (own, _), row, left in zip(few, rows, left_by_each(target, rows, fitted), strict=True):
+                found.append((float(left) / self.size, (outer, Change(own, row[None] if own.start else row))))
         return sorted(found, key=_order)
 
     def _on_top(self, singles: Sequence[Change]) -> list[Candidate]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
@@ -31,3 +33,11 @@ def basis(rows: Array) -> Array:
     lengths = np.linalg.norm(rows, axis=1)
     U, sigma, _ = np.linalg.svd((rows[lengths > 0.0] / lengths[lengths > 0.0, None]).T, full_matrices=False)
     return np.asarray(U[:, sigma > 1e-10 * sigma.max(initial=0.0)])
+
+
+def left_by_each(target: Array, rows: Array, fitted: Sequence[int]) -> Array:
+    """The same for many changes, (changes, numbers), each as it is or, where one number is fitted, as far as best."""
+    along, squares = rows @ target, np.sum(rows * rows, axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        part = np.where(np.asarray(fitted) > 0, np.where(squares > 0.0, along / squares, 0.0), 1.0)
+    return np.asarray(np.linalg.norm(target - part[:, None] * rows, axis=1))

@@ -59,17 +59,19 @@ class Variant:
 
     def evaluate(self, batch: Batch) -> Values:
         """What it computes at states of the robot."""
-        given = self.given(batch)
-        values = run(self.model, given, self.mutations)
-        for own in self.outputs:
-            values = own(batch, values)
-        return values
+        return self.shown(batch, run(self.model, self.given(batch), self.mutations))
 
     def given(self, batch: Batch) -> Batch:
         """The states that the recursion gets."""
         for own in self.inputs:
             batch = own(batch)
         return batch
+
+    def shown(self, batch: Batch, values: Values) -> Values:
+        """What it makes of the recursion's results, beside the states that it was given."""
+        for own in self.outputs:
+            values = own(batch, values)
+        return values
 
 
 def run(model: Model, batch: Batch, mutations: Sequence[Mutation] = (), call: Call = FLOAT.call) -> Values:
