@@ -101,7 +101,7 @@ def log_page(report: LogDiagnosis) -> Page:
         )
         said = f"{percent(before.share)} of tau, {percent(after.share)} with the causes"
         bars.append(Bars(cells, lengths[k], lengths[len(names) + k], said))
-    head = ("joint", "left is", "rms", "largest", "of tau", "left", "noise")
+    head = ("joint", "", "rms", "largest", "of tau", "left", "noise")
     return Page(
         title=report.robot,
         compared=f"{report.log}: {report.rows:,} rows of {report.seconds:.3g} s",
