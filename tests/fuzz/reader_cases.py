@@ -40,6 +40,12 @@ OPTIONS = {
         "--index", "--gravity", "--payload", "--payload-link", "--payload-axes", "--base", "--seed", "--sampling",
         "--xacro-arg", "--package", "--reference", "--json",
     ),
+    "diagnose": (
+        "--states", "--gravity", "--payload", "--payload-link", "--payload-axes", "--base", "--seed", "--xacro-arg",
+        "--package", "--reference", "--json", "--html",
+    ),
+    "sample": ("--states", "--gravity", "--payload", "--payload-link", "--base", "--seed", "--package", "--output"),
+    "compare": ("--states", "--gravity", "--base", "--seed", "--package", "--json", "--html"),
     "new": ("--name", "--output"),
 }  # fmt: skip
 """Those that take a word, by command."""
@@ -184,7 +190,9 @@ def _words(rng: random.Random) -> str:
     """A command line, as a list in JSON."""
     command = rng.choice(list(OPTIONS))
     words = [command, rng.choice(("RT", "TRR", *WORDS[:4])) if command == "new" else "trr"]
-    words += ["--subject", "recursion"] if command == "state" else []
+    words += {"state": ["--subject", "recursion"], "diagnose": ["--subject", "recursion"], "compare": ["trtr"]}.get(
+        command, []
+    )
     for _ in range(rng.randint(1, 3)):
         words += [rng.choice(OPTIONS[command]), rng.choice((*WORDS, *NUMBERS, *LATEX_PIECES, *PYTHON_PIECES))]
     return json.dumps(words)

@@ -144,6 +144,7 @@ UNUSABLE = {
     "diagnose-states": (["diagnose", "--subject", "kernel", "--states", "0"], "--states is 0: expected a whole number"),
     "diagnose-program": (["diagnose", "--subject", "./my_id"], "a program needs its path, such as ./my_id"),
     "diagnose-reference": (["diagnose", "--subject", "kernel", "--reference", "bullet"], "there are kernel"),
+    "diagnose-half-a-letter": (["diagnose", "--subject", "kernel", "--reference", "\ud800"], "there are kernel"),
     "diagnose-table": (["diagnose", "rttrr", "no.csv"], "no.csv cannot be read"),
     "diagnose-page": (["diagnose", "--subject", "kernel", "--html", "no/such/folder/x.html"], "cannot be written"),
     "diagnose-twice": (["diagnose", "--subject", "kernel", "--html", "-", "--json", "-"], "both go to stdout"),

@@ -17,11 +17,13 @@ _read: set[object] = set()
 
 
 def identity(path: Path) -> object:
-    """What two names of one file share; None for a device or a pipe, which overwrites nothing."""
+    """What two names of one file share; None for a device or a pipe, which overwrites nothing, and no file's name."""
     try:
         status = path.stat()
-    except (OSError, ValueError):
-        return os.path.realpath(path) if "\0" not in str(path) else None
+    except OSError:
+        return os.path.realpath(path)
+    except ValueError:  # a character that no name of a file has
+        return None
     return (status.st_dev, status.st_ino) if stat.S_ISREG(status.st_mode) else None
 
 
