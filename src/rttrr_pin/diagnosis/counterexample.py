@@ -118,6 +118,7 @@ def _as_test(state: Batch, labels: Sequence[tuple[str, str]], k: int, got: float
     index = f"[{column}]" if quantity == "tau" else f"[{column // 3}][{column % 3}]"
     q, v, a = ("[" + ", ".join(f"{x:.17g}" for x in getattr(state, name)[0]) + "]" for name in "qva")
     gravity = ", ".join(f"{x:g}" for x in model.gravity)
+    sign = "+" if expected < 0.0 else "-"
     return "\n".join(
         [
             f"def test_{quantity}_of_{_identifier(at)}():",
@@ -128,7 +129,7 @@ def _as_test(state: Batch, labels: Sequence[tuple[str, str]], k: int, got: float
             f"        a={a},",
             "    )",
             f"    # proven by interval arithmetic; it was {got:.17g}",
-            f"    assert abs({quantity}{index} - {expected!r}) <= {max(abs(expected), abs(got)) * 1e-9:.1e}",
+            f"    assert abs({quantity}{index} {sign} {abs(expected)!r}) <= {max(abs(expected), abs(got)) * 1e-9:.1e}",
         ]
     )
 
