@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.payload import Load
 from rttrr_pin.diagnosis.evidence import Evidence, flat, loaded, places, spread
 from rttrr_pin.errors import RttrrError
 from rttrr_pin.implementations import Batch, Implementation
@@ -75,7 +76,7 @@ def _asked(ask: Differences, evidence: Evidence) -> list[str]:
     drawn = Sampler(model).draw(0, POSES)
     q, v, a = drawn.q, drawn.v, drawn.a
     still = np.zeros_like(v)
-    loads = tuple(replace(own, f=own.f[:1], n=own.n[:1]) if own.f.ndim > 1 else own for own in evidence.batch.loads)
+    loads = tuple(map(_largest, evidence.batch.loads))
 
     def at(q: Array, v: Array, a: Array) -> tuple[Array, Array]:
         return ask(Batch(model, q, v, a))
@@ -107,6 +108,12 @@ def _asked(ask: Differences, evidence: Evidence) -> list[str]:
         changes = _clear(loaded[0] - whole[0], loaded[1] + whole[1])
         lines.append("it changes with the payload" if changes else "the payload does not change it")
     return lines
+
+
+def _largest(load: Load) -> Load:
+    """The payload of the state in which it is largest, for all states; in some of a batch there is none."""
+    sizes = np.linalg.norm(np.hstack([np.atleast_2d(load.f), np.atleast_2d(load.n)]), axis=-1)
+    return load if load.f.ndim == 1 else replace(load, f=load.f[np.argmax(sizes)], n=load.n[np.argmax(sizes)])
 
 
 def _of_rates(at: Callable[[Array, Array, Array], tuple[Array, Array]], q: Array, v: Array, still: Array) -> list[str]:
