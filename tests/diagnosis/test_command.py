@@ -71,7 +71,7 @@ def test_a_robot_that_has_nothing_to_diagnose_exits_2(
 def test_a_table_of_one_row_is_diagnosed(desk: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (desk / "results.csv").write_text(f"{HEADER}\n{ROW},1000\n")
     assert main(["diagnose", ARM, "results.csv"]) == 1
-    assert "1 states of the table" in capsys.readouterr().out
+    assert "1 state of the table" in capsys.readouterr().out
 
 
 def test_json_alone_or_nothing_is_printed(desk: Path, capsys: pytest.CaptureFixture[str]) -> None:

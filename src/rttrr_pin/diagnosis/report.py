@@ -48,8 +48,9 @@ def show_diagnosis(result: Diagnosis, console: Console, full: bool = False) -> N
 
 def compared(result: Diagnosis) -> str:
     """What was compared with what, in how many states."""
-    states = f"{result.n_states:,} {'states of the table' if result.sampling == 'table' else 'telling states'}"
-    return f"{result.subject} against {result.reference}, {states}"
+    plural = "s" * (result.n_states != 1)
+    states = f"state{plural} of the table" if result.sampling == "table" else f"telling state{plural}"
+    return f"{result.subject} against {result.reference}, {result.n_states:,} {states}"
 
 
 def told(cause: Cause) -> str:
