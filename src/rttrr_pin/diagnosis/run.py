@@ -17,7 +17,7 @@ from rttrr_pin.diagnosis.conventions import conventions
 from rttrr_pin.diagnosis.counterexample import counterexample
 from rttrr_pin.diagnosis.dependence import dependence
 from rttrr_pin.diagnosis.evidence import Evidence, flat, part_of, places, spread
-from rttrr_pin.diagnosis.fitting import Explanation
+from rttrr_pin.diagnosis.fitting import Explanation, growth
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.joints import joints
 from rttrr_pin.diagnosis.levers import levers
@@ -34,7 +34,7 @@ from rttrr_pin.implementations import Batch, Evaluation, Implementation, default
 from rttrr_pin.implementations.protocol import evaluated
 from rttrr_pin.implementations.registry import Source
 from rttrr_pin.robot import Robot
-from rttrr_pin.validation.compare import with_allowance
+from rttrr_pin.validation.compare import ratio, with_allowance
 from rttrr_pin.validation.sampling import Payload
 from rttrr_pin.validation.states import model_of
 
@@ -130,7 +130,7 @@ def _diagnosed(
     elif notes:
         found.dependence = (*notes, "in all other states it is rounding")
     after = both.difference - (found.changes if found.causes else 0.0)
-    left = np.abs(after) / (both.tolerance + both.rounding) if found.causes else before
+    left = ratio(np.abs(after), both.tolerance + found.rounding) if found.causes else before
     return Diagnosis(
         robot=model.name,
         subject=label(programs[0]),
@@ -161,6 +161,7 @@ class _Found:
         others: other sets.
         near: what comes nearest.
         changes: of the difference, by the causes.
+        rounding: of the recursion under the causes.
         tried: hypotheses.
         dependence: what the difference depends on.
     """
@@ -169,6 +170,7 @@ class _Found:
     others: list[tuple[Cause, ...]] = field(default_factory=list)
     near: list[NearMiss] = field(default_factory=list)
     changes: Array | float = 0.0
+    rounding: Array | float = 0.0
     tried: int = 0
     dependence: tuple[str, ...] = ()
 
@@ -191,7 +193,9 @@ def _explained(programs: Sequence[Implementation], evidence: Sequence[Evidence],
         first, *rest = explanations
         found.causes += _causes(first, program)
         found.others += [tuple(_causes(one, program)) for one in rest[:OTHERS]]
-        found.changes += sign * (predicted(applied(base, first.hypotheses, first.numbers), own) - own.expected)
+        values = predicted(applied(base, first.hypotheses, first.numbers), own)
+        found.changes += sign * (values - own.expected)
+        found.rounding += own.rounding * growth(values, own.expected)
     if unexplained:
         found.causes, found.others = [], []
     return found
