@@ -40,6 +40,12 @@ NEAR = 0.5
 OUTER = 6
 """On top of so many of the best hypotheses all others are tried."""
 
+FEWER = 3
+"""Where hypotheses are tried on top of each convention, on each third state of the sample."""
+
+NOT_KNOWN = np.empty(0)
+"""A change that was not computed by itself."""
+
 OUTERMOST = 40
 """On top of so many, those on inertial parameters, whose changes cost little."""
 
@@ -215,18 +221,20 @@ class Search:
             return []
         found: list[Candidate] = []
         variants = [variant for _, variant in alone]
-        without = predicted_all(variants, self.sample)
+        few_states = self.sample.part(np.arange(0, len(self.sample.batch), FEWER))
+        scale = self.scale[: len(few_states.batch)]
+        size = float(np.linalg.norm(few_states.difference / scale)) or 1.0
         for own in self.hypotheses:
             if not _general(own) or own.start or own.parameters is not None:
                 continue
-            applied_to = predicted_all([own.apply(variant, ()) for variant in variants], self.sample)
-            for (outer, _), values, base in zip(alone, applied_to, without, strict=True):
+            applied_to = predicted_all([own.apply(variant, ()) for variant in variants], few_states)
+            for (outer, _), values in zip(alone, applied_to, strict=True):
                 with np.errstate(invalid="ignore", over="ignore"):
-                    change = ((values - base) / self.scale).ravel()
-                    left = float(np.linalg.norm((self.sample.values - values) / self.scale)) / self.size
-                if np.isfinite(change).all():
-                    found.append((left, (outer, Change(own, change))))
+                    left = float(np.linalg.norm((few_states.values - values) / scale)) / size
+                if np.isfinite(left):
+                    found.append((left, (outer, Change(own, NOT_KNOWN))))
             self.tried += 1
+        without = predicted_all(variants, self.sample)
         parts = [(own, own.parameters) for own in self.hypotheses if len(own.start) <= 1]
         few = [(own, direction.ravel()) for own, direction in parts if direction is not None]
         fitted = [len(own.start) for own, _ in few]
@@ -256,8 +264,8 @@ class Search:
 
     def _alone(self, own: Change) -> Variant | None:
         """The program under one hypothesis, its numbers fitted as if it were the only one."""
-        fit = self.fitting.fit((own.hypothesis,), self.sample)
-        variant = applied(self.base, (own.hypothesis,), fit.numbers)
+        numbers = self.fitting.fit((own.hypothesis,), self.sample).numbers if own.fitted else ()
+        variant = applied(self.base, (own.hypothesis,), numbers)
         return variant if np.isfinite(predicted(variant, self.sample)).all() else None
 
     def _grown(self, sets: Iterable[Explanation]) -> list[Explanation]:
@@ -266,7 +274,7 @@ class Search:
         for own in sets:
             variant = applied(self.base, own.hypotheses, own.numbers)
             target = ((self.sample.values - predicted(variant, self.sample)) / self.scale).ravel()
-            before = tuple(Change(one, np.empty(0)) for one in own.hypotheses)
+            before = tuple(Change(one, NOT_KNOWN) for one in own.hypotheses)
             candidates += [self._rank(before, one, target) for one in self.changes_on(variant)]
         return self.confirmed(sorted(candidates, key=_order))
 
