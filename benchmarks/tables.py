@@ -319,6 +319,43 @@ def joints() -> Lines:
     ]
 
 
+def faults() -> Lines:
+    """What is named of planted faults, and how long it takes."""
+    bench, times = result("fault_bench"), result("diagnose_time")
+    counts = bench["counts"]
+    rows = [
+        (
+            what,
+            f"{counts[what]:,}",
+            f"{counts[f'{what} detected']:,}",
+            f"{counts[f'{what} named']:,}",
+            f"{counts[f'{what} the same in other words']:,}",
+            f"{100 * bench['named_or_the_same'][what]:.1f} %",
+        )
+        for what in ("singles", "pairs")
+    ]
+    seconds = {
+        EXAMPLES.get(row["robot"], row["robot"].upper()): max(
+            other["seconds"] for other in times["rows"] if other["robot"] == row["robot"]
+        )
+        for row in times["rows"]
+    }
+    fewest, most = bench["hypotheses_of_a_robot"]
+    return [
+        f"Faults from the whole catalogue, planted in {bench['robots']} random robots "
+        f"({measured(bench, 'fault_bench')}; {fewest:,} to {most:,} hypotheses each; tau alone):",
+        "",
+        *table(["", "planted", "detected", "named", "the same in other words", "together"], rows),
+        "",
+        f"{counts['clean']:,} clean results, half of them printed to six digits: {counts['false alarms']} false "
+        "alarms. "
+        f"`rttrr-pin diagnose` with one fault in {times['rows'][0]['states']} states, start included "
+        f"(`python benchmarks/diagnose_time.py`): "
+        + ", ".join(f"{name} {x:.1f} s" for name, x in seconds.items())
+        + ".",
+    ]
+
+
 def main_path() -> Lines:
     commands = result("main_path")["commands"]
     keys = ("files", "functions", "classes", "modules")
@@ -358,6 +395,7 @@ def three_numbers() -> Lines:
 
 TABLES: dict[str, Callable[[], Lines]] = {
     "agreement": agreement, "audit": audit, "bounds": bounds, "calls": calls, "cost": cost, "errors": errors,
+    "faults": faults,
     "installed size": installed_size, "joints": joints, "main path": main_path, "operations": operations,
     "peers": peers, "robots": robots, "speed": speed, "three numbers": three_numbers,
 }  # fmt: skip
