@@ -69,6 +69,15 @@ def test_states_printed_to_few_digits_are_exact_where_results_have_all(tmp_path:
     assert Table(path, pendulum().model).digits is None
 
 
+def test_round_numbers_of_a_state_are_exact_beside_others_of_all_digits(tmp_path: Path) -> None:
+    """An acceleration of 1 beside coordinates of 17 digits and results of six is not one between 0.5 and 1.5."""
+    states = [(0.123456789012345678, 1.0), (1.25, -1.0), (-2.000000000000001, 1.0)]
+    for factor in (1.0, 1.3):
+        tau = [float(moment(np.float64(q), 0, factor * a)) for q, a in states]
+        rows = "".join(f"{q!r},0,{a:g},{x:.6g}\n" for (q, a), x in zip(states, tau, strict=True))
+        assert validate(pendulum(), written(tmp_path, HEADER + rows), "recursion").passed == (factor == 1.0)
+
+
 @pytest.mark.parametrize("separator", [",", ";", "\t", " , "])
 def test_separators(tmp_path: Path, separator: str) -> None:
     assert validate(pendulum(), swings(tmp_path, separator=separator), "recursion").passed

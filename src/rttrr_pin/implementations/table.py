@@ -66,12 +66,15 @@ class Table:
         parsed = {key: _numbers(columns, names[key], lines, self.name) for key in names}
         printed = [parsed[key][1] for key in self.quantities]
         self.digits, self.notes = judged_at(self.name, printed, "it was printed")
-        self._halves = {key: digits.half_units(x) for key, (x, digits) in parsed.items()}
-        self._payloads, payload_digits = _payloads(columns, model, lines, self.name)
-        given = [*(parsed[key][1] for key in STATE), *payload_digits]
-        self._states_rounded = self.digits is not None and any(_alike(own, printed) for own in given)
+        self._halves = {
+            key: _half_units(x, digits, printed) if key in STATE else digits.half_units(x)
+            for key, (x, digits) in parsed.items()
+        }
+        self._payloads = _payloads(columns, model, lines, self.name, printed)
+        halves = [*(self._halves[key] for key in STATE), *(half for _, half in self._payloads)]
+        self._states_rounded = any(half.any() for half in halves)
         self._values = {key: x for key, (x, _) in parsed.items()}
-        if self._states_rounded:
+        if self._halves["q"].any():
             _normalise(model, self._values["q"], self._halves["q"])
         try:
             self._values |= {key: coordinates(key, self._values[key], model.moving) for key in STATE}
@@ -124,6 +127,8 @@ class Table:
         state, loads = {key: getattr(batch, key) for key in STATE}, list(batch.loads)
         for key in STATE:
             for k, half in enumerate(self._halves[key][part].T):
+                if not half.any():
+                    continue
                 moved = state[key].copy()
                 moved[:, k] += half
                 if key == "q":
@@ -132,6 +137,8 @@ class Table:
         for i, (_, halves) in enumerate(self._payloads):
             load = loads[i]
             for k, half in enumerate(halves[part].T):
+                if not half.any():
+                    continue
                 moved = np.hstack([load.f, load.n])
                 moved[:, k] += half
                 other = replace(load, f=moved[:, :3], n=moved[:, 3:])
@@ -145,6 +152,15 @@ def _normalise(model: Model, q: Array, half: Array) -> None:
         length = norm(q[:, part])
         close = np.abs(length - 1.0) <= 2 * half[:, part].sum(axis=1)
         q[close, part] /= length[close, None]
+
+
+def _half_units(x: Array, digits: Digits, printed: Sequence[Digits]) -> Array:
+    """Half a unit of the last place of numbers of a state: 0 where they were not rounded as results were, but round.
+
+    Accelerations of 1, 0.5 and -1 beside results of six digits are these numbers, and not some between 0.5 and 1.5.
+    """
+    rounded = not all(own.full for own in printed) and _alike(digits, printed)
+    return digits.half_units(x) if rounded else np.zeros_like(x)
 
 
 def _alike(digits: Digits, printed: Sequence[Digits]) -> bool:
@@ -196,10 +212,10 @@ def check_complete(columns: Columns, names: Sequence[str], table: str) -> None:
 
 
 def _payloads(
-    columns: Columns, model: Model, lines: Sequence[int], name: str
-) -> tuple[list[tuple[Load, Array]], list[Digits]]:
-    """The payloads that are not zero in all rows, each with half units of its numbers (N, 6); and all their digits."""
-    payloads, printed = [], []
+    columns: Columns, model: Model, lines: Sequence[int], name: str, printed: Sequence[Digits]
+) -> list[tuple[Load, Array]]:
+    """The payloads that are not zero in all rows, each with half units of its numbers (N, 6)."""
+    payloads = []
     for (link, in_base), names in payload_columns(model).items():
         if not any(column in columns for column in names):
             continue
@@ -212,9 +228,8 @@ def _payloads(
             raise InputError(f"{name}: {error}") from error
         if x.any():
             load = Load(model.link_index(link), x[:, :3], x[:, 3:], in_base)
-            payloads.append((load, digits.half_units(x)))
-            printed.append(digits)
-    return payloads, printed
+            payloads.append((load, _half_units(x, digits, printed)))
+    return payloads
 
 
 def numbers_of_columns(columns: Columns, names: Sequence[str], lines: Sequence[int], name: str) -> Array:
