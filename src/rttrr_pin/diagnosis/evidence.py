@@ -67,6 +67,13 @@ def spread(sizes: dict[str, Array], quantities: Sequence[str]) -> Array:
     return np.hstack([np.repeat(sizes[key], 3, axis=1) if key in LINK_QUANTITIES else sizes[key] for key in quantities])
 
 
+def rms(x: Array) -> Array:
+    """Root mean square of each column, also where squares overflow."""
+    largest = np.abs(x).max(axis=0, initial=0.0)
+    largest = np.where(largest > 0.0, largest, 1.0)
+    return np.asarray(largest * np.sqrt(np.mean((x / largest) ** 2, axis=0)))
+
+
 def places(model: Model, quantities: Sequence[str]) -> list[tuple[str, str]]:
     """Quantity, and link or joint, of each number."""
     labels: list[tuple[str, str]] = []

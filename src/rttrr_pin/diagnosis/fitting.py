@@ -9,7 +9,7 @@ from itertools import islice, product
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.diagnosis.evidence import Evidence
+from rttrr_pin.diagnosis.evidence import Evidence, rms
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.minimax import minimax
 from rttrr_pin.diagnosis.predictions import applied, jacobian, predicted, predicted_all
@@ -177,6 +177,6 @@ class Fitting:
 
 def growth(values: Array, expected: Array) -> Array:
     """How many times as large as expected results a program's are, number by number, at least 1: so its rounding is."""
-    sizes = [np.sqrt(np.mean(x**2, axis=0)) for x in (values, expected)]
+    sizes = [rms(x) for x in (values, expected)]
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(sizes[1] > 0.0, np.maximum(sizes[0] / sizes[1], 1.0), 1.0)

@@ -108,7 +108,9 @@ def _steps(own: Hypothesis) -> list[tuple[tuple[float, ...], float]]:
 def visible_changes(raw: Sequence[Raw], evidence: Evidence, scale: Array) -> list[Change]:
     """The changes that can be seen, each number divided by its scale; of equal ones the first stands for all."""
     least, divisor = (evidence.tolerance + evidence.rounding).ravel(), scale.ravel()
-    return _distinct([Change(own, change / divisor) for own, change in raw if (np.abs(change) > least).any()])
+    seen = [Change(own, change / divisor) for own, change in raw if (np.abs(change) > least).any()]
+    # beside a difference of 1e200 a change is nothing, and has no direction
+    return _distinct([own for own in seen if 0.0 < np.linalg.norm(own.change) < np.inf])
 
 
 def predicted(variant: Variant, evidence: Evidence) -> Array:

@@ -15,7 +15,7 @@ from itertools import islice
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.diagnosis.evidence import Evidence, screened, with_worst
+from rttrr_pin.diagnosis.evidence import Evidence, rms, screened, with_worst
 from rttrr_pin.diagnosis.fitting import Explanation, Fitting, growth
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.predictions import (
@@ -114,9 +114,7 @@ class Search:
             rows, self.raw = with_worst(rows, ratios), None
         self.sample = part = evidence.part(rows)
         self.tried, self.ranked = 0, list[Candidate]()
-        seen, allowed, usual = (
-            np.sqrt(np.mean(x**2, axis=0)) for x in (part.difference, part.tolerance, part.expected)
-        )
+        seen, allowed, usual = (rms(x) for x in (part.difference, part.tolerance, part.expected))
         scale = np.maximum(np.maximum(seen, allowed), FLOOR * usual)
         self.scale = np.broadcast_to(np.where(scale > 0.0, scale, 1.0), part.values.shape)
         self.fitting = Fitting(base, evidence, part, self.scale[0])
