@@ -162,3 +162,21 @@ def test_the_counterexample_is_a_test_that_fails(arm: Robot) -> None:
 def test_results_far_from_any_torque_are_a_difference_and_no_crash(arm: Robot, factor: float) -> None:
     found = diagnose(arm, Wrong(arm, lambda batch, tau: tau * factor), n_states=20)
     assert not found.passed and found.residual_before > 1e6
+
+
+class Printed(Wrong):
+    """The same printed to four digits."""
+
+    def evaluate(self, batch: Batch) -> Evaluation:
+        """Results, and half a unit of their last place."""
+        tau = super().evaluate(batch).values["tau"]
+        unit = 10.0 ** np.floor(np.log10(np.maximum(np.abs(tau), 1e-12)) - 3)
+        return Evaluation({"tau": np.round(tau / unit) * unit}, {"tau": 0.5 * unit + 1e-12})
+
+
+def test_a_cause_that_is_barely_more_than_the_digits_is_found(arm: Robot) -> None:
+    """Printing leaves more of the difference than half: the cause is computed all the same."""
+    found = diagnose(arm, Printed(arm, lambda batch, tau: 1.0001 * tau), n_states=60)
+    assert found.verdict == "explained" and found.residual_before < 5.0
+    (cause,) = found.causes
+    assert cause.hypothesis == "factor of tau" and cause.values["factor"] == 1.0001

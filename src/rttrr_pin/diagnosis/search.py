@@ -28,14 +28,14 @@ from rttrr_pin.diagnosis.predictions import (
     raw_changes,
     visible_changes,
 )
-from rttrr_pin.diagnosis.spans import basis, distance, left_by, left_by_each, rest_of
+from rttrr_pin.diagnosis.spans import left_by, left_by_each, pairs, rest_of
 from rttrr_pin.diagnosis.variant import Variant
 
 CONFIRMED = 40
 """So many of the best sets are computed as they are."""
 
 NEAR = 0.5
-"""A set is computed only if it leaves less than this part of the difference."""
+"""A set is computed only if it leaves less than this part of the difference, or than rounding may leave."""
 
 OUTER = 6
 """On top of so many of the best hypotheses all others are tried."""
@@ -94,6 +94,7 @@ class Search:
         raw: what they change on the sample, where it is known already.
         sample: the states on which they are tried first.
         fitting: fits the numbers of a set.
+        near: a set is computed only if it leaves less than this part of the difference; rounding leaves as much.
         tried: how many times one was tried.
         ranked: single hypotheses, by how much of the difference they leave.
     """
@@ -120,6 +121,8 @@ class Search:
         self.fitting = Fitting(base, evidence, part, self.scale[0])
         self.target = (part.difference / self.scale).ravel()
         self.size = float(np.linalg.norm(self.target))
+        open_ = float(np.linalg.norm((part.tolerance + part.rounding) / self.scale))
+        self.near = max(NEAR, open_ / self.size) if self.size else NEAR
 
     def run(self) -> list[Explanation]:
         """The explanations that cost least, best first; where there is none, what comes nearest."""
@@ -187,28 +190,7 @@ class Search:
 
     def _sums(self, singles: Sequence[Change]) -> list[Candidate]:
         """Pairs by the sum of their changes."""
-        fixed = [own for own in singles if not own.fitted]
-        free = [own for own in singles if own.fitted]
-        found: list[Candidate] = []
-        if fixed:
-            A = np.array([own.change for own in fixed])
-            gram, along = A @ A.T, A @ self.target
-            square = self.size**2 - 2 * (along[:, None] + along) + 2 * gram + np.diag(gram) + np.diag(gram)[:, None]
-            square[np.tril_indices(len(fixed))] = np.inf
-            for k in np.argsort(square, axis=None)[: 4 * CONFIRMED]:
-                i, j = divmod(int(k), len(fixed))
-                if np.isfinite(square[i, j]):
-                    found.append((_root(square[i, j]) / self.size, (fixed[i], fixed[j])))
-        for n, own in enumerate(free):
-            Q = basis(own.change)
-            target = self.target - Q @ (Q.T @ self.target)
-            if fixed:
-                rest = target - (A - (A @ Q) @ Q.T)
-                lengths = np.linalg.norm(rest, axis=1)
-                found += [(float(lengths[k]) / self.size, (own, fixed[k])) for k in np.argsort(lengths)[:4]]
-            for other in free[n + 1 :]:
-                projected = other.change - (other.change @ Q) @ Q.T
-                found.append((distance(target, projected) / self.size, (own, other)))
+        found = [(left / self.size, pair) for left, pair in pairs(self.target, singles, 4 * CONFIRMED)]
         return sorted(found, key=_order)
 
     def _conventions(self, singles: Sequence[Change]) -> list[Candidate]:
@@ -281,7 +263,7 @@ class Search:
         found: list[Explanation] = []
         promising = (own for own in candidates if not (len(own[1]) == 1 and found and self._hopeless(own[1][0])))
         for left, own in islice(promising, CONFIRMED):
-            if left > NEAR and found:
+            if left > self.near and found:
                 break
             fit = self.fitting.fit(tuple(one.hypothesis for one in own), self.sample)
             alike = tuple(one.alike for one in own)
@@ -312,7 +294,3 @@ def _general(own: Hypothesis) -> bool:
 def _order(candidate: Candidate) -> tuple[float, int]:
     left, own = candidate
     return round(left, 9), sum(one.fitted for one in own)
-
-
-def _root(square: float) -> float:
-    return float(np.sqrt(max(square, 0.0)))

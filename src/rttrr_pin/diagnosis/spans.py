@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -41,3 +41,35 @@ def left_by_each(target: Array, rows: Array, fitted: Sequence[int]) -> Array:
     with np.errstate(divide="ignore", invalid="ignore"):
         part = np.where(np.asarray(fitted) > 0, np.where(squares > 0.0, along / squares, 0.0), 1.0)
     return np.asarray(np.linalg.norm(target - part[:, None] * rows, axis=1))
+
+
+Pair = tuple[float, tuple[Change, Change]]
+"""The length of what is left of a difference, and the changes."""
+
+
+def pairs(target: Array, changes: Sequence[Change], most: int) -> Iterator[Pair]:
+    """What sums of two changes leave of a difference; of two without fitted numbers the best ones, so many."""
+    fixed = [own for own in changes if not own.fitted]
+    free = [own for own in changes if own.fitted]
+    rows = np.array([own.change for own in fixed]).reshape(len(fixed), len(target))
+    yield from _fixed_pairs(target, fixed, rows, most)
+    for n, own in enumerate(free):
+        Q = basis(own.change)
+        left = target - Q @ (Q.T @ target)
+        lengths = np.linalg.norm(left - (rows - (rows @ Q) @ Q.T), axis=1)
+        for k in np.argsort(lengths)[:4].tolist():
+            yield float(lengths[k]), (own, fixed[k])
+        for other in free[n + 1 :]:
+            yield distance(left, other.change - (other.change @ Q) @ Q.T), (own, other)
+
+
+def _fixed_pairs(target: Array, fixed: Sequence[Change], rows: Array, most: int) -> Iterator[Pair]:
+    """Of two without fitted numbers, by the squares of lengths: all at once."""
+    gram, along = rows @ rows.T, rows @ target
+    lengths = np.diag(gram)
+    squares = float(target @ target) - 2 * (along[:, None] + along) + 2 * gram + lengths + lengths[:, None]
+    squares[np.tril_indices(len(fixed))] = np.inf
+    for k in np.argsort(squares, axis=None)[:most].tolist():
+        i, j = divmod(k, len(fixed))
+        if np.isfinite(squares[i, j]):
+            yield float(np.sqrt(max(squares[i, j], 0.0))), (fixed[i], fixed[j])
