@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
 import pytest
 
 from rttrr_pin import RandomPayload, load
@@ -38,3 +39,34 @@ def test_it_is_told_whether_the_payload_matters(spoil: Any, line: str) -> None:
     allowed = spread(default_allowance(batch), ("tau",))
     evidence = Evidence(batch, ("tau",), values, expected, allowed, allowed)
     assert line in dependence([subject, reference], evidence)
+
+
+def test_a_program_that_is_not_deterministic_is_called_so() -> None:
+    """And no law of rates and accelerations is told of noise."""
+    rng = np.random.default_rng(0)
+
+    def noisy(values: dict[str, Any], batch: Any) -> None:
+        values["tau"] += 0.01 * rng.standard_normal(values["tau"].shape)
+
+    _, *lines = _told(noisy)
+    assert len(lines) == 1 and "not deterministic" in lines[0]
+
+
+def test_a_program_without_a_number_somewhere_is_not_asked_on() -> None:
+    """NaN is beyond no bound: it was said that rates do not change the difference."""
+
+    def silent(values: dict[str, Any], batch: Any) -> None:
+        values["tau"][(batch.v != 0.0).all(axis=1)] = np.nan
+        values["tau"] += 0.1
+
+    _, *lines = _told(silent, 6)
+    assert len(lines) == 1 and "no number" in lines[0]
+
+
+def _told(spoil: Any, n: int = 40) -> tuple[str, ...]:
+    model = load("trr").model
+    batch = sample_states(load("trr"), n, 0, None).states
+    programs = [Altered(make_implementation("recursion", model), spoil), make_implementation("recursion", model)]
+    values, expected = (np.nan_to_num(flat(dict(one.evaluate(batch).values), ("tau",))) for one in programs)
+    allowed = spread(default_allowance(batch), ("tau",))
+    return dependence(programs, Evidence(batch, ("tau",), values, expected, allowed, allowed))

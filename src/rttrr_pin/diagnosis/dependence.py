@@ -10,7 +10,7 @@ import numpy as np
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.payload import Load
 from rttrr_pin.diagnosis.evidence import Evidence, flat, loaded, places, spread
-from rttrr_pin.errors import RttrrError
+from rttrr_pin.errors import ImplementationError, RttrrError
 from rttrr_pin.implementations import Batch, Implementation
 from rttrr_pin.implementations.protocol import evaluated
 from rttrr_pin.validation.compare import with_allowance
@@ -65,6 +65,9 @@ def _differences(programs: Sequence[Implementation], quantities: Sequence[str]) 
         results = [with_allowance(batch, evaluated(one, batch)) for one in programs]
         x, y = (flat(dict(one.values), quantities) for one in results)
         first, second = (spread(dict(one.allowance or {}), quantities) for one in results)
+        for program, own in zip(programs, (x, y), strict=True):
+            if not np.isfinite(own).all():
+                raise ImplementationError(f"{program.name} has no number at some of the states it was asked at")
         return x - y, first + second
 
     return ask
@@ -81,16 +84,18 @@ def _asked(ask: Differences, evidence: Evidence) -> list[str]:
     def at(q: Array, v: Array, a: Array) -> tuple[Array, Array]:
         return ask(Batch(model, q, v, a))
 
+    whole, again = at(q, v, a), at(q, v, a)
+    if (np.abs(whole[0] - again[0]) > whole[1] + again[1]).any():
+        return ["it is another one when the same states are asked again: a program is not deterministic"]
     rest, allowed = at(q, still, still)
     lines = ["it is there at rest" if _clear(rest, allowed) else "it is zero at rest"]
     lines += _of_rates(at, q, v, still)
     lines += _of_accelerations(at, q, a, still)
-    together, one = at(q, v, a), [at(q, v, still), at(q, still, a)]
-    mixed = together[0] - one[0][0] - one[1][0] + rest
-    if _clear(mixed, together[1] + one[0][1] + one[1][1] + allowed):
+    of_v, of_a = at(q, v, still), at(q, still, a)
+    mixed = whole[0] - of_v[0] - of_a[0] + rest
+    if _clear(mixed, whole[1] + of_v[1] + of_a[1] + allowed):
         lines.append("rates and accelerations do not simply add up")
     moving = []
-    whole = at(q, v, a)
     for k, name in enumerate(model.v_names):
         displacement = np.zeros_like(v)
         displacement[:, k] = 0.5

@@ -25,7 +25,7 @@ class Cause:
         values: the numbers that were fitted, beside those of the robot's file.
         equation: of the paper, where the error is in one; else empty.
         line: the line of the recursion or of the robot's file to look at; else empty.
-        alternatives: sentences of what would give the same results, in each of the states.
+        alternatives: causes that would give the same results, in each of the states.
     """
 
     hypothesis: str
@@ -89,14 +89,13 @@ class Diagnosis(Summarised):
         verdict: "agrees" where all differences are rounding; "explained" where causes bring them down to that; else
             "unexplained".
         causes: the smallest set.
-        others: other sets, as small, that no number of these states tells apart from it.
+        others: other sets, as small, that explain these states as well; at most ten.
         residuals: by quantity and joint or link.
         residual_before: the largest difference over what rounding and printing explain.
         residual_after: the same with the causes.
         dependence: sentences, what the difference depends on; where it is unexplained.
         near_misses: what comes nearest, best first; where it is unexplained.
         counterexample: a test to paste, of a state as simple as could be found; empty where there is none.
-        state: the number of that state among those that were compared; None where it is none of them.
         n_states: how many states were compared.
         sampling: "telling" or "table".
         tried: how many hypotheses were.
