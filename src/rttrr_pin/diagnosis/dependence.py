@@ -10,6 +10,7 @@ import numpy as np
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.payload import Load
 from rttrr_pin.diagnosis.evidence import Evidence, flat, loaded, places, spread
+from rttrr_pin.diagnosis.fitting import EQUATIONS
 from rttrr_pin.errors import ImplementationError, RttrrError
 from rttrr_pin.implementations import Batch, Implementation
 from rttrr_pin.implementations.protocol import evaluated
@@ -25,6 +26,9 @@ CLEAR = 100.0
 ALIKE = 1e-6
 """Relative: ratios as near as that to 2 or 4 are these."""
 
+FULL = 10
+"""Numbers of the largest causes: the inertial parameters of a link."""
+
 Differences = Callable[[Batch], tuple[Array, Array]]
 """The difference of two programs, (N, numbers), and what rounding explains of it."""
 
@@ -35,6 +39,9 @@ def dependence(programs: Sequence[Implementation], evidence: Evidence) -> tuple[
     Programs are asked at new states; of a table only its own rows can be looked at.
     """
     where = _where(evidence)
+    tried = evidence.values.size // EQUATIONS
+    if tried < FULL:
+        where += f"; {evidence.values.size} results are too few for a cause with more than {tried} fitted numbers"
     if any(hasattr(one, "states") for one in programs):
         return (where, *_of_rows(evidence))
     try:
