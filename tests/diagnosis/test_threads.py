@@ -23,8 +23,8 @@ STATES = 60
 
 TURNED_PARTLY = "outwards: turn the first term alone of R.T @ (w_dot_p.cross(p) + w_p.cross(w_p.cross(p)) + v_dot_p)"
 
-ARM, TURNED, FINGERS, DH, TREE = (
-    text(name) for name in ("arm_with_gripper", "turned_inertial", "fingers", "modified_dh", "two_arms")
+ARM, TURNED, FINGERS, DH, TREE, TWO_LINKS = (
+    text(name) for name in ("arm_with_gripper", "turned_inertial", "fingers", "modified_dh", "two_arms", "two_links")
 )
 
 GRIPPER = ARM[ARM.index('<link name="gripper">') : ARM.index('<joint name="pan"')]
@@ -168,7 +168,17 @@ THREADS = (
            lambda: planted.newton_euler("modified_dh", partly_turned=True), lambda: rttrr_pin.load(DH)),
     Thread("petercorke/robotics-toolbox-python#326, #404", "force at the next joint at every link",
            lambda: planted.newton_euler("modified_dh", lever_of_next=True), lambda: rttrr_pin.load(DH)),
+    Thread("a closed form", "velocity terms of a joint negated", lambda: planted.two_links(velocity_sign=-1.0),
+           lambda: rttrr_pin.load(TWO_LINKS), at="shoulder"),
+    Thread("a closed form", "Coriolis terms of a joint halved", lambda: planted.two_links(two=1.0),
+           lambda: rttrr_pin.load(TWO_LINKS), at="shoulder"),
+    Thread("a closed form", "gravity of a joint negated", lambda: planted.two_links(gravity_sign_at_elbow=-1.0),
+           lambda: rttrr_pin.load(TWO_LINKS), at="elbow"),
 )  # fmt: skip
+
+
+def test_the_closed_form_without_a_slip_agrees() -> None:
+    assert diagnose(rttrr_pin.load(TWO_LINKS), planted.two_links(), n_states=STATES).passed
 
 
 PAGE = (Path(__file__).parents[2] / "docs" / "diagnose.md").read_text().replace("\\", "")

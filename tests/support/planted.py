@@ -142,3 +142,31 @@ def newton_euler(robot: str, partly_turned: bool = False, lever_of_next: bool = 
         return tau
 
     return program
+
+
+def two_links(velocity_sign: float = 1.0, two: float = 2.0, gravity_sign_at_elbow: float = 1.0) -> Program:
+    """The textbooks' closed form of `two_links`, with what a newcomer gets wrong.
+
+    Args:
+        velocity_sign: of the velocity terms in tau of the shoulder.
+        two: the factor of v_1 v_2 there.
+        gravity_sign_at_elbow: of gravity in tau of the elbow.
+    """
+    m1, m2, l, c1, c2, I1, I2, g = 2.0, 1.5, 0.5, 0.25, 0.2, 0.05, 0.02, 9.81
+
+    def program(q: Array, v: Array, a: Array) -> Array:
+        h = m2 * l * c2 * np.sin(q[1])
+        m12 = I2 + m2 * (c2**2 + l * c2 * np.cos(q[1]))
+        m22 = I2 + m2 * c2**2
+        m11 = I1 + m1 * c1**2 + m2 * l**2 + m22 + 2.0 * m2 * l * c2 * np.cos(q[1])
+        of_lower = m2 * c2 * g * np.cos(q[0] + q[1])
+        of_both = (m1 * c1 + m2 * l) * g * np.cos(q[0]) + of_lower
+        velocity = -h * (two * v[0] * v[1] + v[1] ** 2)
+        return np.array(
+            [
+                m11 * a[0] + m12 * a[1] + velocity_sign * velocity + of_both,
+                m12 * a[0] + m22 * a[1] + h * v[0] ** 2 + gravity_sign_at_elbow * of_lower,
+            ]
+        )
+
+    return program

@@ -19,6 +19,7 @@ from rttrr_pin.diagnosis.dependence import dependence
 from rttrr_pin.diagnosis.evidence import Evidence, flat, part_of, places, spread
 from rttrr_pin.diagnosis.fitting import Explanation, growth
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
+from rttrr_pin.diagnosis.joint_terms import joint_terms
 from rttrr_pin.diagnosis.joints import joints
 from rttrr_pin.diagnosis.levers import levers
 from rttrr_pin.diagnosis.mechanics import mechanics
@@ -47,7 +48,7 @@ BARELY = 10.0
 OTHERS = 10
 """Other sets that are told."""
 
-CATALOGUES = (conventions, parameters, placements, joints, mechanics, levers)
+CATALOGUES = (conventions, parameters, placements, joints, mechanics, levers, joint_terms)
 
 
 def diagnose(
