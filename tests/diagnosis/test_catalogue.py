@@ -17,6 +17,7 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.diagnosis.conventions import conventions
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
+from rttrr_pin.diagnosis.joint_terms import joint_terms
 from rttrr_pin.diagnosis.joints import joints
 from rttrr_pin.diagnosis.parameters import parameters
 from rttrr_pin.diagnosis.placements import placements
@@ -27,7 +28,7 @@ from support.robots import driven
 from support.serial_chains import random_chain
 from support.trees import random_tree
 
-CATALOGUES = (conventions, parameters, joints, placements)
+CATALOGUES = (conventions, parameters, joints, placements, joint_terms)
 
 MOVING = ("revolute", "continuous", "prismatic", "fixed")
 

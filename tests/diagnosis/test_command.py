@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 
+from rttrr_pin import Wrench, load
 from rttrr_pin.cli import main
 from rttrr_pin.implementations import registry
 from rttrr_pin.reporting import output
@@ -66,6 +67,34 @@ def test_a_robot_that_has_nothing_to_diagnose_exits_2(
     assert main(["diagnose", f"{robot}.urdf", "--subject", "recursion"]) == 2
     out, err = capsys.readouterr()
     assert out == "" and message in err and err.count("\n") == 1
+
+
+@pytest.mark.parametrize("words", [[ARM], []])
+def test_a_table_in_place_of_the_robot_is_told_the_order(
+    words: list[str], desk: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (desk / "results.csv").write_text(f"{HEADER}\n{ROW},1000\n")
+    assert main(["diagnose", "results.csv", *words]) == 2
+    out, err = capsys.readouterr()
+    line = shlex.join(["rttrr-pin", "diagnose", *(words or ["ROBOT"]), "results.csv"])
+    assert out == "" and err.endswith(f"the robot comes first: {line}\n") and err.count("\n") == 1
+
+
+def test_a_payload_beside_a_table_is_taken_and_told_or_refused(desk: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A wrench is that of its results, as `validate` takes it; none is drawn for states that are there already."""
+    (desk / "results.csv").write_text(f"{HEADER}\n{ROW},1000\n")
+    words = ["diagnose", ARM, "results.csv", "--payload"]
+    assert main([*words, "random"]) == 2
+    assert "no random payload" in capsys.readouterr().err
+    robot = load(ARM)
+    tau = robot.inverse_dynamics([0.1], [0.2], [0.3], payload=Wrench(force=[1, 2, 3], moment=[4, 5, 6])).tau[0]
+    (desk / "results.csv").write_text(f"{HEADER}\n{ROW},{float(tau)!r}\n")
+    assert main([*words, "1,2,3,4,5,6"]) == 0
+    assert "[1.0, 2.0, 3.0]" in capsys.readouterr().out
+    assert main(words[:-1]) == 1
+    (desk / "results.csv").write_text("time,q_joint_1,tau_joint_1\n" + "".join(f"{k},{k},0\n" for k in range(60)))
+    assert main([*words, "1,2,3,4,5,6"]) == 2
+    assert "--payload" in capsys.readouterr().err
 
 
 def test_a_table_of_one_row_is_diagnosed(desk: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -91,6 +93,36 @@ def test_results_that_are_no_numbers_are_no_agreement(arm: Robot) -> None:
     assert any("state" in line and "5" in line for line in found.dependence)
     with pytest.raises(InputError):
         diagnose(arm, Wrong(arm, lambda batch, tau: tau * np.nan), n_states=10)
+
+
+def test_zeros_are_zero(arm: Robot) -> None:
+    """Of all joints, or of one; not a mass, a factor or gravity, though at rest without tau there is no gravity."""
+    found = diagnose(arm, Wrong(arm, lambda batch, tau: 0.0 * tau), n_states=40)
+    assert [cause.hypothesis for cause in found.causes] == [
+        "tau missing at every joint"
+    ] and found.verdict == "explained"
+    found = diagnose(arm, Wrong(arm, lambda batch, tau: tau * (np.arange(5) != 1)), n_states=40)
+    assert [(cause.hypothesis, cause.joint) for cause in found.causes] == [("tau missing", "joint_2")]
+
+
+def test_zeros_of_a_table_at_rest_are_zero(arm: Robot, tmp_path: Path) -> None:
+    names = [f"{key}_{name}" for key in ("q", "v", "a", "tau") for name in arm.model.v_names]
+    rows = np.hstack([np.random.default_rng(0).uniform(-1, 1, (30, 5)), np.zeros((30, 15))])
+    np.savetxt(tmp_path / "zeros.csv", rows, delimiter=",", header=",".join(names), comments="")
+    found = diagnose(arm, tmp_path / "zeros.csv")
+    assert [cause.hypothesis for cause in found.causes] == ["tau missing at every joint"]
+
+
+def test_where_nothing_acts_nothing_is_compared(arm: Robot) -> None:
+    """Zeros that equal zeros are no agreement: of a robot without mass, and of two programs that give none."""
+    empty = Robot(
+        replace(arm.model, links=tuple(replace(own, mass=0.0, inertia=0.0 * own.inertia) for own in arm.model.links))
+    )
+    with pytest.raises(InputError, match="nothing was compared"):
+        diagnose(empty, "recursion", n_states=10)
+    zero = [Wrong(arm, lambda batch, tau: 0.0 * tau, name) for name in ("one", "other")]
+    with pytest.raises(InputError, match="nothing was compared"):
+        diagnose(arm, *zero, n_states=10)
 
 
 def odd(batch: Batch, tau: np.ndarray) -> np.ndarray:

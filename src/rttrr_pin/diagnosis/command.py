@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import shlex
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -53,7 +55,11 @@ def diagnose(
     Exit code: 0 agrees, 1 differs, 2 unusable input.
     """
     from rttrr_pin.diagnosis.log import is_log
+    from rttrr_pin.implementations.table_files import READERS
 
+    if Path(run["robot"]).suffix.lower() in READERS:
+        right = shlex.join(["rttrr-pin", "diagnose", results or "ROBOT", run["robot"]])
+        raise InputError(f"{run['robot']} is a table, and the robot comes first: {right}")
     if (results is None) == (subject is None):
         raise InputError("name a table of results or a --subject, one of the two: rttrr-pin diagnose ROBOT results.csv")
     chosen = subject if results is None else results
@@ -66,6 +72,8 @@ def diagnose(
         from rttrr_pin.diagnosis.log_diagnosis import diagnose_log
         from rttrr_pin.diagnosis.log_report import show_log
 
+        if options.payload is not None:
+            raise InputError(f"{results} is a log, and takes no --payload: what the robot carried is looked for in it")
         result = log = diagnose_log(loaded, results)
         show = partial(show_log, log, console)
     else:
@@ -89,10 +97,4 @@ def _find(robot: Robot, options: RunOptions, states: int, quiet: bool) -> Diagno
     what = options.chosen()
     [reference] = what.pop("reference")
     with progress(None, quiet, "hypotheses") as advance:
-        result = find(robot, **what, reference=reference, n_states=states, progress=advance)
-    if not any(own.size or own.before for own in result.residuals):
-        raise InputError(
-            f"all results for robot {robot.name!r} are zero in every state, by both programs: nothing was compared; "
-            "pass gravity, a payload or states in which a force acts"
-        )
-    return result
+        return find(robot, **what, reference=reference, n_states=states, progress=advance)

@@ -9,7 +9,7 @@ from rttrr_pin.diagnosis.gravity import gravities
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.joint_order import orders
 from rttrr_pin.diagnosis.payload_conventions import payload_conventions
-from rttrr_pin.diagnosis.signs_and_units import signs_and_units
+from rttrr_pin.diagnosis.signs_and_units import no_tau, signs_and_units
 from rttrr_pin.diagnosis.wrench_conventions import wrench_conventions
 
 
@@ -18,6 +18,7 @@ def conventions(model: Model) -> list[Hypothesis]:
     if not model.nv:
         return [*gravities(model), *wrench_conventions(model), *payload_conventions(model)]
     return [
+        *no_tau(model),
         *gravities(model),
         *equation_terms(model),
         *signs_and_units(model),

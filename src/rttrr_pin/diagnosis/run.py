@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
-from rttrr_pin.core.payload import RandomPayload, load_of
+from rttrr_pin.core.payload import Load, RandomPayload, load_of
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.diagnosis.conventions import conventions
 from rttrr_pin.diagnosis.counterexample import counterexample
@@ -37,7 +37,7 @@ from rttrr_pin.implementations.registry import Source
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.compare import ratio, with_allowance
 from rttrr_pin.validation.sampling import Payload
-from rttrr_pin.validation.states import model_of
+from rttrr_pin.validation.states import described, model_of, table_of
 
 NEAR_MISSES, LEAST = 5, 0.1
 """So many are told, of those that explain this part at least."""
@@ -69,14 +69,15 @@ def diagnose(
         n_states: how many telling states (`sample_states`); of a table all of its own.
         seed: of the states.
         payload: what the robot exerts on its surroundings: nothing; a wrench, the same in every state; or
-            `RandomPayload()`, in some of the states.
+            `RandomPayload()`, in some of the states. A table without payload columns takes the wrench that its
+            results were computed with.
         progress: called with the number of hypotheses tried so far.
 
     Returns:
         The verdict, the causes, and what is left with them.
 
     Raises:
-        InputError: an argument cannot be used, or the programs have no quantity in common.
+        InputError: an argument cannot be used, the programs have no quantity in common, or all that they give is zero.
         ImplementationError: a program is missing, refuses the robot, dies, or says something else than numbers.
     """
     begin = time.perf_counter()
@@ -84,7 +85,10 @@ def diagnose(
     programs = [make_implementation(source, model) for source in (subject, reference)]
     batch, sampling = _states(robot, programs, n_states, seed, payload)
     with np.errstate(over="ignore", invalid="ignore"):
-        return _diagnosed(programs, batch, sampling, progress, begin)
+        result = _diagnosed(programs, batch, sampling, progress, begin)
+    if sampling == "table" and payload is not None:
+        return replace(result, notes=(f"payload in every state of the table: {described(payload)}", *result.notes))
+    return result
 
 
 def hypotheses_of(model: Model) -> list[Hypothesis]:
@@ -95,16 +99,14 @@ def hypotheses_of(model: Model) -> list[Hypothesis]:
 def _states(
     robot: Robot, programs: Sequence[Implementation], n_states: int, seed: int, payload: Payload
 ) -> tuple[Batch, str]:
-    """Those of a table among the programs; else telling ones."""
-    tables = [one.states() for one in programs if hasattr(one, "states")]
-    if not tables:
-        if payload is None or isinstance(payload, RandomPayload):
-            return sample_states(robot, n_states, seed, payload).states, "telling"
-        states = sample_states(robot, n_states, seed, None).states
-        return replace(states, loads=(load_of(states.model, payload),)), "telling"
-    if len(tables) > 1 and not all(np.array_equal(getattr(tables[0], x), getattr(tables[1], x)) for x in "qva"):
-        raise InputError(f"{programs[0].name} and {programs[1].name} are of different states: diagnose them one by one")
-    return tables[0], "table"
+    """Those of a table among the programs, with the payload that it has or that is passed; else telling ones."""
+    load = payload if payload is None or isinstance(payload, RandomPayload) else load_of(robot.model, payload)
+    table = table_of(programs, load)
+    if table is not None:
+        return table, "table"
+    if isinstance(load, Load):
+        return replace(sample_states(robot, n_states, seed, None).states, loads=(load,)), "telling"
+    return sample_states(robot, n_states, seed, load).states, "telling"
 
 
 def _diagnosed(
@@ -120,6 +122,11 @@ def _diagnosed(
     batch, results = part_of(batch, kept), [_part(one, kept) for one in results]
     evidence = _evidence(batch, results, shared)
     both = _between(*evidence)
+    if not (both.values.any() or both.expected.any()):
+        raise InputError(
+            f"all results for robot {model.name!r} are zero in every state, by both programs: nothing was compared; "
+            "pass gravity, a payload or states in which a force acts"
+        )
     before = both.of_tolerance(both.expected)
     differs = bool((before > 1.0).any())
     found = _Found()

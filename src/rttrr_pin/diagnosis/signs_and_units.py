@@ -85,6 +85,32 @@ def _in_unit(variant: Variant, x: Sequence[float], columns: Mapping[str, Mapping
     return scaled(variant, columns["q"], columns["v"], columns["a"])
 
 
+def no_tau(model: Model) -> Iterator[Hypothesis]:
+    """Tau left out, as in a table that was never filled: at every joint, or at the only one."""
+    joints = slots(model)
+    if len(joints) == 1:
+        yield _missing(joints[0])
+        return
+    yield Hypothesis(
+        id="tau missing at every joint",
+        kind="convention",
+        sentence="tau is 0",
+        repair="compute tau; of a table, fill its columns",
+        apply=partial(_tau_zero, columns=[k for joint in joints for k in joint.v]),
+    )
+
+
+def _missing(joint: Slots) -> Hypothesis:
+    return Hypothesis(
+        id="tau missing",
+        kind="convention",
+        sentence=f"tau of {joint.name} is 0",
+        repair=f"compute tau of {joint.name}",
+        apply=partial(_tau_zero, columns=joint.v),
+        joint=joint.name,
+    )
+
+
 def _of_tau(own: Sequence[Slots]) -> Iterator[Hypothesis]:
     """Sign and factors of all of tau, or of its moments or forces."""
     rates = [k for joint in own for k in joint.v]
@@ -117,7 +143,7 @@ def _tau_factor(variant: Variant, x: Sequence[float], columns: Sequence[int]) ->
 
 
 def _of_joint(model: Model, joint: Slots) -> Iterator[Hypothesis]:
-    """Sign, direction and factor of one joint, and its tau left out."""
+    """Sign, direction and factor of one joint, and its tau left out where it is one of several."""
     name = joint.name
     if len(joint.q) == len(joint.v) == 1:
         yield Hypothesis(
@@ -129,16 +155,9 @@ def _of_joint(model: Model, joint: Slots) -> Iterator[Hypothesis]:
             joint=name,
             line=line_of(model, joint=name),
         )
-    yield Hypothesis(
-        id="tau missing",
-        kind="convention",
-        sentence=f"tau of {name} is 0",
-        repair=f"compute tau of {name}",
-        apply=partial(_tau_zero, columns=joint.v),
-        joint=name,
-    )
     if model.nv == len(joint.v):
         return
+    yield _missing(joint)
     yield Hypothesis(
         id="sign of tau at a joint",
         kind="convention",

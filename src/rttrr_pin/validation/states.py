@@ -42,7 +42,7 @@ class States:
             InputError: there are two of different states, or the payload is another in each state.
         """
         self.sampler, self.compiled = sampler, compiled
-        self.table = _table_of(programs, sampler.payload)
+        self.table = table_of(programs, sampler.payload)
         self.sampling = sampler.sampling if self.table is None else "table"
 
     def described(self, payload: Payload) -> str:
@@ -72,8 +72,12 @@ class States:
                 progress(part.stop)
 
 
-def _table_of(programs: Sequence[Implementation], payload: Load | RandomPayload | None) -> Batch | None:
-    """The states of the table among the programs, with the payload that its results were computed with."""
+def table_of(programs: Sequence[Implementation], payload: Load | RandomPayload | None) -> Batch | None:
+    """The states of the table among the programs, with the payload that its results were computed with.
+
+    Raises:
+        InputError: there are two of different states, or a payload is passed that is not that of the table.
+    """
     tables: list[tuple[str, Batch]] = [(one.name, one.states()) for one in programs if hasattr(one, "states")]
     if not tables:
         return None
