@@ -66,7 +66,7 @@ STATES = 3
 """Random states that say which terms a joint has."""
 
 ZERO = 1e-11
-"""Relative to the largest of its kind at any joint: a term that is smaller is zero but for rounding."""
+"""Relative to the largest term of any joint: one that is smaller is zero but for rounding."""
 
 
 def joint_terms(model: Model) -> list[Hypothesis]:
@@ -79,10 +79,10 @@ def joint_terms(model: Model) -> list[Hypothesis]:
 
 
 def _sizes(model: Model) -> Terms:
-    """By term, the largest at each rate, (nv,), over the largest of its kind."""
+    """By term, the largest at each rate, (nv,), over the largest of all."""
     found = {key: np.abs(x).max(axis=0) for key, x in equation_terms(model, Sampler(model).draw(0, STATES)).items()}
-    kinds = {"centrifugal terms": "velocity terms", "Coriolis terms": "velocity terms"}
-    return {key: x / (found[kinds.get(key, key)].max() or 1.0) for key, x in found.items()}
+    largest = max(x.max() for x in found.values()) or 1.0
+    return {key: x / largest for key, x in found.items()}
 
 
 def _terms_of(joint: Slots, sizes: Terms) -> Iterator[Term]:
