@@ -12,7 +12,7 @@ import rttrr_pin
 from rttrr_pin import Robot
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.diagnosis import diagnose
-from rttrr_pin.diagnosis.joint_terms import SLIPS, TERMS, equation_terms, joint_terms
+from rttrr_pin.diagnosis.joint_terms import SLIPS, TERMS, parts_of_tau, joint_terms
 from rttrr_pin.diagnosis.run import hypotheses_of
 from rttrr_pin.diagnosis.variant import Variant
 from rttrr_pin.validation.sampling import Sampler
@@ -49,7 +49,7 @@ def test_terms_are_those_of_the_equation_of_motion(name: str) -> None:
     robot = robots()[name]
     states = Sampler(robot.model, seed=1).draw(0, 4)
     q, v, a = states.q, states.v, states.a
-    terms, nothing = equation_terms(robot.model, states), np.zeros_like(v)
+    terms, nothing = parts_of_tau(robot.model, states), np.zeros_like(v)
     size = np.abs(robot.inverse_dynamics(q, v, a).tau).max()
     whole = Robot(robot.model.without_joint_effects()).inverse_dynamics(q, v, a).tau
     own = np.zeros_like(v)
@@ -103,7 +103,7 @@ def test_what_comes_before_is_done_to_the_term_too() -> None:
     before = mass.apply(degrees.apply(Variant(model), ()), ())
     given, altered = before.given(states), before.model
     wanted = -before.evaluate(states)["tau"]
-    wanted[:, 4] += equation_terms(altered, given)["Coriolis terms"][:, 4]
+    wanted[:, 4] += parts_of_tau(altered, given)["Coriolis terms"][:, 4]
     got = slip.apply(sign.apply(before, ()), ()).evaluate(states)["tau"]
     assert np.abs(got - wanted).max() < CLOSE * np.abs(wanted).max()
     assert np.abs(got + before.evaluate(states)["tau"]).max() > 1e-6 * np.abs(wanted).max()

@@ -80,7 +80,7 @@ def joint_terms(model: Model) -> list[Hypothesis]:
 
 def _sizes(model: Model) -> Terms:
     """By term, the largest at each rate, (nv,), over the largest of all."""
-    found = {key: np.abs(x).max(axis=0) for key, x in equation_terms(model, Sampler(model).draw(0, STATES)).items()}
+    found = {key: np.abs(x).max(axis=0) for key, x in parts_of_tau(model, Sampler(model).draw(0, STATES)).items()}
     largest = max(x.max() for x in found.values()) or 1.0
     return {key: x / largest for key, x in found.items()}
 
@@ -123,17 +123,17 @@ def _with_factor(variant: Variant, x: Sequence[float], term: str, at: list[int],
 @lru_cache(maxsize=16)
 def _known_terms(model: Model, inputs: tuple[Input, ...], mutations: tuple[Mutation, ...], batch: Batch) -> Terms:
     """The terms of the last few programs and batches; models and batches are frozen, and known by identity."""
-    return equation_terms(model, Variant(model, inputs).given(batch), mutations)
+    return parts_of_tau(model, Variant(model, inputs).given(batch), mutations)
 
 
-def equation_terms(model: Model, batch: Batch, mutations: Sequence[Mutation] = ()) -> Terms:
+def parts_of_tau(model: Model, batch: Batch, mutations: Sequence[Mutation] = ()) -> Terms:
     """By term of `TERMS`, its part of tau of each joint, (N, nv), without payloads and what joints take themselves."""
     size = max(1, ROWS // (1 + 2 * model.nv))
-    parts = [_equation_terms(model, batch, rows, mutations) for rows in blocks(len(batch), size)]
+    parts = [_parts_of_tau(model, batch, rows, mutations) for rows in blocks(len(batch), size)]
     return {term.id: np.concatenate([part[term.id] for part in parts]) for term in TERMS}
 
 
-def _equation_terms(model: Model, batch: Batch, rows: slice, mutations: Sequence[Mutation]) -> Terms:
+def _parts_of_tau(model: Model, batch: Batch, rows: slice, mutations: Sequence[Mutation]) -> Terms:
     """The terms of some states."""
     q, v, a = (x[rows] for x in (batch.q, batch.v, batch.a))
     n, nv = v.shape
