@@ -12,7 +12,7 @@ import rttrr_pin
 from rttrr_pin import Robot
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.diagnosis import diagnose
-from rttrr_pin.diagnosis.joint_terms import SLIPS, TERMS, parts_of_tau, joint_terms
+from rttrr_pin.diagnosis.joint_terms import SLIPS, TERMS, joint_terms, parts_of_tau
 from rttrr_pin.diagnosis.run import hypotheses_of
 from rttrr_pin.diagnosis.variant import Variant
 from rttrr_pin.validation.sampling import Sampler
@@ -66,8 +66,8 @@ def test_terms_are_those_of_the_equation_of_motion(name: str) -> None:
         for i in range(robot.model.nv)
         for k in range(i)
     ]
-    assert np.abs(sum(alone) - terms["centrifugal terms"]).max() < CLOSE * size
-    assert np.abs(sum(pairs) - terms["Coriolis terms"]).max() < CLOSE * size
+    assert np.abs(np.sum(alone, axis=0) - terms["centrifugal terms"]).max() < CLOSE * size
+    assert np.abs(np.sum(pairs, axis=0) - terms["Coriolis terms"]).max() < CLOSE * size
 
 
 def columns_of(robot: Robot) -> list[list[int]]:
@@ -121,7 +121,7 @@ def factor_at(robot: Robot, term: str, joint: int, factor: float) -> Callable[[A
             own = tau(robot, q, nothing, np.where(np.arange(robot.model.nv) == joint, 0.0, a))
         else:
             own = tau(robot, q, v, nothing)
-            singles = sum(tau(robot, q, x * v, nothing) for x in np.eye(robot.model.nv))
+            singles = np.sum([tau(robot, q, x * v, nothing) for x in np.eye(robot.model.nv)], axis=0)
             own = {"velocity terms": own, "centrifugal terms": singles, "Coriolis terms": own - singles}[term]
         result = robot.inverse_dynamics(q, v, a).tau.copy()
         result[..., joint] += (factor - 1.0) * own[..., joint]
