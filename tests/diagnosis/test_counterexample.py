@@ -39,3 +39,21 @@ def test_the_pasted_test_tells_wrong_from_right(direction: float) -> None:
             passed.append(False)
     assert passed == [True, False]
     assert "- -" not in code
+
+
+def test_the_pasted_test_is_for_the_program_that_is_wrong() -> None:
+    """Where the reference is, a test of the subject would pass, and tell nothing."""
+    robot = load(EXAMPLES["one-joint"])
+
+    def doubled(q: Any, v: Any, a: Any) -> Any:
+        return 2.0 * robot.inverse_dynamics(q, v, a).tau
+
+    code = diagnose(robot, "recursion", reference=doubled, n_states=20).counterexample
+    assert "# doubled" in code and "your program" not in code
+    right = {"inverse_dynamics": lambda q, v, a: robot.inverse_dynamics(*map(np.array, (q, v, a))).tau}
+    wrong = {"inverse_dynamics": lambda q, v, a: doubled(*map(np.array, (q, v, a)))}
+    for own in (right, wrong):
+        exec(code, own)
+    next(own for name, own in right.items() if name.startswith("test_"))()
+    with pytest.raises(AssertionError):
+        next(own for name, own in wrong.items() if name.startswith("test_"))()

@@ -41,13 +41,16 @@ def counterexample(programs: Sequence[Implementation], evidence: Evidence) -> st
     if not any(hasattr(one, "states") for one in programs):
         try:
             state = _simplest(state, lambda own: _seen(programs, own, evidence.quantities))
-            subject, _, ratio = _seen(programs, state, evidence.quantities)
+            *values, ratio = _seen(programs, state, evidence.quantities)
         except RttrrError:  # a program that refuses a simpler state
             return ""
     else:
-        subject, ratio = evidence.values[failing[order[:1]]], ratios[failing[order[:1]]]
+        row = failing[order[:1]]
+        values, ratio = [evidence.values[row], evidence.expected[row]], ratios[row]
     k = int(np.argmax(ratio[0]))
-    return _as_test(state, places(batch.model, evidence.quantities), k, float(subject[0, k]))
+    names = ("your program", programs[1].name)
+    got = [(name, float(x[0, k])) for name, x in zip(names, values, strict=True)]
+    return _as_test(state, places(batch.model, evidence.quantities), k, got)
 
 
 def _bare(batch: Batch) -> Batch:
@@ -107,14 +110,15 @@ def _simplest(state: Batch, ask: Callable[[Batch], Seen]) -> Batch:
     return Batch(model, own["q"], own["v"], own["a"])
 
 
-def _as_test(state: Batch, labels: Sequence[tuple[str, str]], k: int, got: float) -> str:
-    """The code; the expected value is the middle of its enclosure."""
+def _as_test(state: Batch, labels: Sequence[tuple[str, str]], k: int, of_programs: Sequence[tuple[str, float]]) -> str:
+    """The code; the expected value is the middle of its enclosure, and it is for the program farther from that."""
     model = state.model
     quantity, at = labels[k]
     exact = getattr(enclose(model, state.q, state.v, state.a, (), true_parameters(model)), quantity)
     column = sum(1 for own in labels[:k] if own[0] == quantity)
     lower, upper = (x.reshape(len(x), -1)[0, column] for x in (exact.lower, exact.upper))
     expected = float(lower + (upper - lower) / 2)
+    name, got = max(of_programs, key=lambda own: abs(own[1] - expected))
     index = f"[{column}]" if quantity == "tau" else f"[{column // 3}][{column % 3}]"
     q, v, a = ("[" + ", ".join(f"{x:.17g}" for x in getattr(state, name)[0]) + "]" for name in "qva")
     gravity = ", ".join(f"{x:g}" for x in model.gravity)
@@ -122,8 +126,8 @@ def _as_test(state: Batch, labels: Sequence[tuple[str, str]], k: int, got: float
     return "\n".join(
         [
             f"def test_{quantity}_of_{_identifier(at)}():",
-            f"    # {model.name}; {_order(model)}; gravity ({gravity}) m/s^2",
-            f"    {quantity} = inverse_dynamics(  # your program",
+            f"    # {_in_comment(model.name)}; {_in_comment(_order(model))}; gravity ({gravity}) m/s^2",
+            f"    {quantity} = inverse_dynamics(  # {_in_comment(name)}",
             f"        q={q},",
             f"        v={v},",
             f"        a={a},",
@@ -140,3 +144,7 @@ def _order(model: Model) -> str:
 
 def _identifier(name: str) -> str:
     return "".join(x if x.isascii() and x.isalnum() else "_" for x in name)
+
+
+def _in_comment(name: str) -> str:
+    return " ".join(name.split())
