@@ -96,6 +96,7 @@ def rms(x: np.ndarray) -> np.ndarray:
     return np.sqrt(np.mean(x**2, axis=0))
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("case", range(12))
 @pytest.mark.parametrize("kind", PLANTED)
 def test_one_planted_difference_is_the_one_that_is_named(kind: str, case: int) -> None:
@@ -118,6 +119,7 @@ def test_one_planted_difference_is_the_one_that_is_named(kind: str, case: int) -
         assert own.difference.b - own.difference.a == pytest.approx(0.7)
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("seed", range(20))
 def test_pairs_of_differences_are_ranked_by_their_true_effects(seed: int) -> None:
     robot = robot_of(seed % 12)
@@ -149,6 +151,7 @@ def test_a_robot_of_every_joint_type_is_the_same_as_itself(seed: int) -> None:
     assert result.passed and not result.effects and not result.notes
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("library", ["mujoco", "pinocchio"])
 def test_a_file_is_the_same_as_what_a_library_makes_of_it(library: str, seed: int) -> None:
@@ -187,6 +190,7 @@ def lumped(model: Model) -> Model:
     return replace(model, links=tuple(whole), joints=tuple(joints), document=None)
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("seed", range(8))
 def test_merged_fixed_links_are_one_note(seed: int) -> None:
     model = rttrr_pin.load(random_tree(seed, 8, (*SIMPLE, "fixed"))).model
@@ -233,6 +237,7 @@ def reversed_names(text: str) -> str:
     return re.sub(r'"(joint|link)_(\d+)"', lambda m: f'"{m[1]}_{99 - int(m[2])}"', text)
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize(
     "rename",
     [
@@ -275,6 +280,7 @@ def moved_frame(model: Model, i: int, along: float, turn: np.ndarray) -> Model:
     return replace(model, joints=tuple(joints), links=tuple(links), document=None)
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("case", range(12))
 def test_other_directions_and_frames_are_the_same_motion(case: int) -> None:
     robot = robot_of(case)
@@ -288,6 +294,7 @@ def test_other_directions_and_frames_are_the_same_motion(case: int) -> None:
     assert any(robot.model.joints[i].name in note for note in result.notes if "other frames" in note)
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("kind", ["mass", "inertia", "damping"])
 @pytest.mark.parametrize("case", [0, 3, 7, 9])
 def test_a_difference_is_found_among_other_frames(kind: str, case: int) -> None:
@@ -354,6 +361,7 @@ def test_limits_and_friction_that_take_no_part_are_told() -> None:
     assert [own.difference.kind for own in taking.mattering] == ["damping", "friction"] or not taking.passed
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("block", range(4))
 def test_random_pairs_never_crash(block: int) -> None:
     """Also robots that have little in common; what is left is told."""
@@ -412,6 +420,7 @@ def test_one_state_and_many_have_the_same_verdict() -> None:
     assert JointEffects() == robot.model.joints[0].effects
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("seed", range(10))
 def test_all_differences_together_make_the_second_of_the_first(seed: int) -> None:
     """Also where the second is of another size, so that its rounding is more than that of the first."""

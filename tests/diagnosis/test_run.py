@@ -151,6 +151,7 @@ def test_a_result_is_data(unexplained: Diagnosis) -> None:
     assert data["schema"] == 1 and data["verdict"] == "unexplained"
 
 
+@pytest.mark.slow
 def test_few_rows_do_not_make_many_numbers_an_explanation(arm: Robot) -> None:
     rng = np.random.default_rng(0)
     noise = rng.normal(size=(3, 5))
@@ -163,6 +164,7 @@ def test_the_same_question_has_the_same_answer(arm: Robot) -> None:
     assert {**first, "seconds": 0} == {**second, "seconds": 0}
 
 
+@pytest.mark.slow
 def test_the_counterexample_is_a_test_that_fails(arm: Robot) -> None:
     """Pasted beside the program it fails, beside a right one it passes; most of its numbers are zero."""
 
