@@ -159,7 +159,7 @@ def test_the_texts_are_right_in_every_notation(name: str, tmp_path: Path) -> Non
     assert audit(notation.publication(tmp_path, notation.texts())).passed
 
 
-@pytest.mark.one_in(4)
+@pytest.mark.one_in(8)
 @pytest.mark.parametrize(("name", "joint", "place"), CASES)
 def test_a_correction_is_in_the_text_s_notation_and_put_into_the_file_it_is_clean(
     name: str, joint: int, place: int, tmp_path: Path

@@ -334,7 +334,7 @@ def test_accelerations_of_a_singular_robot_are_refused(tmp_path: Path) -> None:
         audited(tmp_path, turning, ('quantity = "a"\njoint = 1', "0"))
 
 
-@pytest.mark.one_in(3)
+@pytest.mark.one_in(5)
 @pytest.mark.parametrize("seed", range(8))
 def test_what_is_derived_is_right_and_with_a_sign_turned_it_is_not(seed: int, tmp_path: Path) -> None:
     """Each quantity of random arms, written by the writers of closed forms, read again, and then with an error."""

@@ -163,6 +163,7 @@ def loaded(folder: Path, form: str = "%.17g", state: str = "%.17g", error: float
     return folder / "x.csv"
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("reference", ["recursion", "pinocchio", "lagrange", "kernel"])
 def test_a_payload_of_columns_is_another_in_each_row(tmp_path: Path, reference: str) -> None:
     robot = rttrr_pin.load("rttrr")

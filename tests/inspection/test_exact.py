@@ -104,6 +104,7 @@ def test_semidefinite_is_what_eigenvalues_say_away_from_the_boundary(entries: tu
         assert (rank_if_positive(inertia) is not None) == (smallest > 0)
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("power", SCALES)
 @pytest.mark.parametrize(
     ("tensor", "expected"),
