@@ -173,6 +173,7 @@ def test_parameters_are_what_apply_does(name: str) -> None:
             assert np.abs(tau - reference - Y @ change(one)).max() < CLOSE * size, (one.id, one.link)
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("name", ["rttrr", "mimic"])
 def test_two_are_applied_one_after_the_other(name: str) -> None:
     """Nothing of the first is lost: its inputs and outputs come first, and changes of inertia add up."""

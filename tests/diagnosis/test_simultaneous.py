@@ -112,6 +112,7 @@ def test_results_do_not_depend_on_how_many_are_computed_at_once() -> None:
         assert all(map(same, together(errors, robot.model, batch, rows=rows), first))
 
 
+@pytest.mark.slow
 def test_what_overflows_is_as_by_itself() -> None:
     """A term that is dropped is not there, even where it is infinite: each joint accelerates so in a state of its own."""
     robot = load("mutated")
