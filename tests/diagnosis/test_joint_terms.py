@@ -130,6 +130,7 @@ def factor_at(robot: Robot, term: str, joint: int, factor: float) -> Callable[[A
     return program
 
 
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize(
     ("name", "term", "slip", "joint"),
     [
