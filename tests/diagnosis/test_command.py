@@ -80,6 +80,7 @@ def test_a_table_in_place_of_the_robot_is_told_the_order(
     assert out == "" and err.endswith(f"the robot comes first: {line}\n") and err.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_a_payload_beside_a_table_is_taken_and_told_or_refused(desk: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """A wrench is that of its results, as `validate` takes it; none is drawn for states that are there already."""
     (desk / "results.csv").write_text(f"{HEADER}\n{ROW},1000\n")

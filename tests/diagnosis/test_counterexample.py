@@ -12,6 +12,7 @@ from rttrr_pin.diagnosis import diagnose
 from support.serial_chains import EXAMPLES
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("direction", [1.0, -1.0])
 def test_the_pasted_test_tells_wrong_from_right(direction: float) -> None:
     """The expected value may have either sign."""

@@ -179,6 +179,7 @@ def test_what_a_joint_takes_is_named_with_its_number(arm: Robot, tmp_path: Path,
     assert diagnosis.causes[0].explains > 0.9
 
 
+@pytest.mark.slow
 def test_a_payload_is_named_with_its_mass(arm: Robot, tmp_path: Path) -> None:
     real = arm.with_payload_body(1.5, com=(0.0, 0.02, 0.1))
     diagnosis = diagnose_log(arm, write_log(tmp_path / "x.csv", real, rate=250.0, seconds=8.0))
@@ -230,6 +231,7 @@ def test_several_causes_are_each_named(tmp_path: Path) -> None:
         assert causes["Coulomb friction", name]["Coulomb friction"] == pytest.approx(0.5, rel=0.05)
 
 
+@pytest.mark.slow
 def test_what_the_model_has_is_no_cause(tmp_path: Path) -> None:
     robot = rttrr_pin.load("trr")
     real = robot.with_joint_effects({"joint_2": JointEffects(damping=0.6)})

@@ -72,6 +72,7 @@ def test_the_reference_is_blamed_where_it_is_wrong(arm: Robot) -> None:
     assert [(cause.program, cause.hypothesis) for cause in found.causes] == [("reference", "sign of tau")]
 
 
+@pytest.mark.slow
 def test_each_program_has_causes_of_its_own(arm: Robot) -> None:
     twice = Wrong(arm, lambda batch, tau: tau * 1000.0, "in mm")
     found = diagnose(arm, Wrong(arm, lambda batch, tau: -tau, "negative"), twice)
@@ -95,6 +96,7 @@ def test_results_that_are_no_numbers_are_no_agreement(arm: Robot) -> None:
         diagnose(arm, Wrong(arm, lambda batch, tau: tau * np.nan), n_states=10)
 
 
+@pytest.mark.slow
 def test_zeros_are_zero(arm: Robot) -> None:
     """Of all joints, or of one; not a mass, a factor or gravity, though at rest without tau there is no gravity."""
     found = diagnose(arm, Wrong(arm, lambda batch, tau: 0.0 * tau), n_states=40)
@@ -159,6 +161,7 @@ def test_few_rows_do_not_make_many_numbers_an_explanation(arm: Robot) -> None:
     assert found.verdict == "unexplained"
 
 
+@pytest.mark.slow
 def test_the_same_question_has_the_same_answer(arm: Robot) -> None:
     first, second = (diagnose(arm, lighter(arm, 2, 1.0), n_states=60).to_dict() for _ in range(2))
     assert {**first, "seconds": 0} == {**second, "seconds": 0}
@@ -209,6 +212,7 @@ class Printed(Wrong):
         return Evaluation({"tau": np.round(tau / unit) * unit}, {"tau": 0.5 * unit + 1e-12})
 
 
+@pytest.mark.slow
 def test_a_cause_that_is_barely_more_than_the_digits_is_found(arm: Robot) -> None:
     """Printing leaves more of the difference than half: the cause is computed all the same."""
     found = diagnose(arm, Printed(arm, lambda batch, tau: 1.0001 * tau), n_states=60)

@@ -69,7 +69,7 @@ def check(errors: Sequence[Mutation], batch: Batch, base: Sequence[Mutation] = (
         assert same(values, run(batch.model, batch, [*base, own])), (own.id, own.link)
 
 
-@pytest.mark.one_in(3)
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("name", ["rttrr", "panda-like", "mutated", "1", "4", "5"])
 def test_each_is_as_by_itself(name: str) -> None:
     robot = load(name)

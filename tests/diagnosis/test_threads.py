@@ -184,7 +184,7 @@ def test_the_closed_form_without_a_slip_agrees() -> None:
 PAGE = (Path(__file__).parents[2] / "docs" / "diagnose.md").read_text().replace("\\", "")
 
 
-@pytest.mark.one_in(10)
+@pytest.mark.one_in(16)
 @pytest.mark.parametrize("thread", THREADS, ids=str)
 def test_the_cause_of_a_thread_is_named_alone_and_stands_on_the_page(thread: Thread) -> None:
     result = diagnose(thread.robot(), thread.program(), n_states=STATES, payload=thread.payload)
