@@ -9,9 +9,9 @@ import pytest
 
 from rttrr_pin import RandomPayload, load
 from rttrr_pin.diagnosis.dependence import dependence
-from rttrr_pin.diagnosis.evidence import Evidence, flat, spread
+from rttrr_pin.diagnosis.evidence import Evidence, flat, results, spread
 from rttrr_pin.diagnosis.states import sample_states
-from rttrr_pin.implementations import default_allowance, make_implementation
+from rttrr_pin.implementations import Batch, default_allowance, make_implementation
 from support.implementations import Altered
 
 
@@ -77,3 +77,14 @@ def test_too_few_results_are_said_to_be_too_few() -> None:
     where, *_ = _told(_without, 3)  # of three joints
     assert "9 results are too few for a cause with more than 3 fitted numbers" in where
     assert "too few" not in _told(_without)[0]
+
+
+def test_a_state_that_is_there_five_times_is_one_state() -> None:
+    """Ten numbers fitted to one pose that was told six times were an explanation; what is zero anyway is no result."""
+    model = load("trr").model
+    states = sample_states(load("trr"), 12, 0, None).states
+    rows = np.array([3] * 5 + [7])
+    batch = Batch(model, states.q[rows], states.v[rows], states.a[rows])
+    seen = np.ones((6, 3)) * [1.0, 1e-20, -2.0]
+    evidence = Evidence(batch, ("tau",), seen, 0.0 * seen, 0.0 * seen + 1e-15, 0.0 * seen)
+    assert results(evidence) == 2 * 2

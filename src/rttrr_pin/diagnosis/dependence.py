@@ -9,7 +9,7 @@ import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.payload import Load
-from rttrr_pin.diagnosis.evidence import Evidence, flat, loaded, places, spread
+from rttrr_pin.diagnosis.evidence import Evidence, flat, loaded, places, results, spread
 from rttrr_pin.diagnosis.fitting import EQUATIONS
 from rttrr_pin.errors import ImplementationError, RttrrError
 from rttrr_pin.implementations import Batch, Implementation
@@ -39,9 +39,10 @@ def dependence(programs: Sequence[Implementation], evidence: Evidence) -> tuple[
     Programs are asked at new states; of a table only its own rows can be looked at.
     """
     where = _where(evidence)
-    tried = evidence.values.size // EQUATIONS
+    count = results(evidence)
+    tried = count // EQUATIONS
     if tried < FULL:
-        where += f"; {evidence.values.size} results are too few for a cause with more than {tried} fitted numbers"
+        where += f"; {count} results are too few for a cause with more than {tried} fitted numbers"
     if any(hasattr(one, "states") for one in programs):
         return (where, *_of_rows(evidence))
     try:
@@ -69,9 +70,9 @@ def _listed(words: Sequence[str], most: int = 6) -> str:
 
 def _differences(programs: Sequence[Implementation], quantities: Sequence[str]) -> Differences:
     def ask(batch: Batch) -> tuple[Array, Array]:
-        results = [with_allowance(batch, evaluated(one, batch)) for one in programs]
-        x, y = (flat(dict(one.values), quantities) for one in results)
-        first, second = (spread(dict(one.allowance or {}), quantities) for one in results)
+        found = [with_allowance(batch, evaluated(one, batch)) for one in programs]
+        x, y = (flat(dict(one.values), quantities) for one in found)
+        first, second = (spread(dict(one.allowance or {}), quantities) for one in found)
         for program, own in zip(programs, (x, y), strict=True):
             if not np.isfinite(own).all():
                 raise ImplementationError(f"{program.name} has no number at some of the states it was asked at")

@@ -57,6 +57,16 @@ class Evidence:
         return np.where(np.isnan(ratio), np.inf, ratio)
 
 
+def results(evidence: Evidence) -> int:
+    """How many results there are to fit numbers to: of equal states one, and none where all that is seen is zero."""
+    batch = evidence.batch
+    loads = [np.broadcast_to(x, (len(batch), 3)) for load in batch.loads for x in (load.f, load.n)]
+    states = np.unique(np.hstack([batch.q, batch.v, batch.a, *loads]), axis=0)
+    bound = evidence.tolerance + evidence.rounding
+    seen = (np.maximum(np.abs(evidence.values), np.abs(evidence.expected)) > bound).any(axis=0)
+    return len(states) * int(seen.sum())
+
+
 def flat(values: Values, quantities: Sequence[str]) -> Array:
     """Arrays by quantity side by side, (N, numbers)."""
     return np.hstack([values[key].reshape(len(values[key]), -1) for key in quantities])

@@ -9,7 +9,7 @@ from itertools import islice, product
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.diagnosis.evidence import Evidence, rms
+from rttrr_pin.diagnosis.evidence import Evidence, results, rms
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.minimax import minimax
 from rttrr_pin.diagnosis.predictions import applied, jacobian, predicted, predicted_all
@@ -159,15 +159,15 @@ class Fitting:
         self, hypotheses: tuple[Hypothesis, ...], every: Sequence[Sequence[float]], evidence: Evidence
     ) -> list[Explanation]:
         """How far a set goes with each of several choices of its numbers."""
-        results = predicted_all([applied(self.base, hypotheses, numbers) for numbers in every], evidence)
-        return [self._of_values(hypotheses, x, values, evidence) for x, values in zip(every, results, strict=True)]
+        computed = predicted_all([applied(self.base, hypotheses, numbers) for numbers in every], evidence)
+        return [self._of_values(hypotheses, x, values, evidence) for x, values in zip(every, computed, strict=True)]
 
     def _of_values(
         self, hypotheses: tuple[Hypothesis, ...], numbers: Sequence[float], values: Array, evidence: Evidence
     ) -> Explanation:
         """How far a set goes that computes these results."""
         worst = float(evidence.of_tolerance(values, growth(values, evidence.expected)).max(initial=0.0))
-        if EQUATIONS * len(numbers) > evidence.values.size:
+        if numbers and EQUATIONS * len(numbers) > results(evidence):
             worst = np.inf  # so many numbers explain anything
         with np.errstate(over="ignore", invalid="ignore"):
             sizes = [float(np.linalg.norm(x / self.scale)) for x in (evidence.values - values, evidence.difference)]
