@@ -122,6 +122,7 @@ ACCELERATIONS = {
 }
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("case", ACCELERATIONS)
 def test_accelerations_solved_for(case: str, tmp_path: Path) -> None:
     text, joint = ACCELERATIONS[case]

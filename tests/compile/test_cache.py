@@ -423,6 +423,7 @@ def disowned(monkeypatch: pytest.MonkeyPatch) -> Callable[[Path], None]:
     return disown
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("what", ["folder", "entry"])
 @pytest.mark.parametrize("fault", ["another user", "group writes", "all write"])
 def test_what_another_user_may_have_written_is_not_run(

@@ -186,6 +186,7 @@ UNDECIDED = {
 VERSION = tuple(int(part) for part in mujoco.__version__.split("."))
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("name", FILES)
 @pytest.mark.parametrize(("parser", "program"), PROGRAMS)
 def test_a_program_does_what_our_rules_say(parser: str, program: Program, name: str) -> None:
@@ -199,6 +200,7 @@ WARNED = Behaviour.WARN, Behaviour.ACCEPT
 """Ours and theirs: that a program warned is not seen here."""
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.filterwarnings("ignore::RuntimeWarning")  # yourdfpy divides by the length of an axis
 @pytest.mark.parametrize("name", CASES)
 @pytest.mark.parametrize(("parser", "program"), PROGRAMS)
@@ -296,6 +298,7 @@ def test_blanks_around_numbers_do_to_pinocchio_what_our_rule_says(between: list[
     assert look(text).verdict("Pinocchio").behaviour is pinocchio_behaviour(text, read_document(text))
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("power", range(-18, 7))
 @pytest.mark.parametrize(("parser", "program"), PROGRAMS)
 def test_the_rules_hold_at_every_scale(parser: str, program: Program, power: int) -> None:
