@@ -15,6 +15,7 @@ import rttrr_pin
 from rttrr_pin import Batch, Evaluation, Robot, diagnose
 from rttrr_pin.diagnosis import Diagnosis
 from rttrr_pin.errors import InputError
+from rttrr_pin.implementations import default_allowance
 
 
 @pytest.fixture(scope="module")
@@ -219,3 +220,28 @@ def test_a_cause_that_is_barely_more_than_the_digits_is_found(arm: Robot) -> Non
     assert found.verdict == "explained" and found.residual_before < 5.0
     (cause,) = found.causes
     assert cause.hypothesis == "factor of tau" and cause.values["factor"] == 1.0001
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_little_evidence_is_no_explanation(seed: int) -> None:
+    """Four states that differ by four times rounding are as good as any of a thousand hypotheses."""
+    robot = rttrr_pin.load("trr")
+    rng = np.random.default_rng(seed)
+
+    def change(batch: Batch, tau: np.ndarray) -> np.ndarray:
+        return tau + 4.0 * default_allowance(batch)["tau"] * noise[: len(tau)]
+
+    noise = rng.uniform(-1.0, 1.0, (4, robot.model.nv))
+    assert diagnose(robot, Wrong(robot, change), n_states=4).verdict != "explained"
+
+
+def test_a_small_difference_in_many_states_is_evidence() -> None:
+    robot = rttrr_pin.load("trr")
+    found = diagnose(robot, Wrong(robot, lambda batch, tau: tau * (1.0 + 1e-12)), n_states=200)
+    assert found.verdict == "explained" and "factor" in found.causes[0].hypothesis
+
+
+def test_the_cause_of_one_program_is_told_where_the_other_is_unexplained(arm: Robot) -> None:
+    found = diagnose(arm, Wrong(arm, odd, "odd"), Wrong(arm, lambda batch, tau: -tau, "negative"), n_states=40)
+    assert found.verdict == "unexplained" and not found.causes
+    assert any("opposite sign" in line and "negative" in line for line in found.dependence)

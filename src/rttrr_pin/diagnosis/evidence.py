@@ -15,6 +15,9 @@ from rttrr_pin.core.wrench import LINK_QUANTITIES
 from rttrr_pin.diagnosis.variant import Values
 from rttrr_pin.implementations.protocol import Batch
 
+MOST_TIMES = 2.0**60
+"""More than that a difference is not said to be times rounding."""
+
 SCREENED = 24
 """States on which hypotheses are tried first: a few hundred equations tell nearly all of them apart."""
 
@@ -65,6 +68,14 @@ def results(evidence: Evidence) -> int:
     bound = evidence.tolerance + evidence.rounding
     seen = (np.maximum(np.abs(evidence.values), np.abs(evidence.expected)) > bound).any(axis=0)
     return len(states) * int(seen.sum())
+
+
+def bits(evidence: Evidence) -> float:
+    """How much the differences say: of each result, by how many powers of two it is more than rounding explains."""
+    batch = evidence.batch
+    loads = [np.broadcast_to(x, (len(batch), 3)) for load in batch.loads for x in (load.f, load.n)]
+    _, first = np.unique(np.hstack([batch.q, batch.v, batch.a, *loads]), axis=0, return_index=True)
+    return float(np.log2(np.clip(evidence.of_tolerance(evidence.expected)[first], 1.0, MOST_TIMES)).sum())
 
 
 def flat(values: Values, quantities: Sequence[str]) -> Array:

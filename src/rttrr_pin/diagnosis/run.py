@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
@@ -16,8 +16,9 @@ from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.diagnosis.conventions import conventions
 from rttrr_pin.diagnosis.counterexample import counterexample
 from rttrr_pin.diagnosis.dependence import dependence
-from rttrr_pin.diagnosis.evidence import Evidence, flat, part_of, places, spread
+from rttrr_pin.diagnosis.evidence import Evidence, bits, part_of, places
 from rttrr_pin.diagnosis.fitting import Explanation, growth
+from rttrr_pin.diagnosis.gathering import between, evidence_of, finite_states, part_of_result
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.joint_terms import joint_terms
 from rttrr_pin.diagnosis.joints import joints
@@ -31,7 +32,7 @@ from rttrr_pin.diagnosis.search import Progress, Search
 from rttrr_pin.diagnosis.states import sample_states
 from rttrr_pin.diagnosis.variant import Variant
 from rttrr_pin.errors import InputError
-from rttrr_pin.implementations import Batch, Evaluation, Implementation, default_allowance, label, make_implementation
+from rttrr_pin.implementations import Batch, Implementation, label, make_implementation
 from rttrr_pin.implementations.protocol import evaluated
 from rttrr_pin.implementations.registry import Source
 from rttrr_pin.robot import Robot
@@ -44,6 +45,9 @@ NEAR_MISSES, LEAST = 5, 0.1
 
 BARELY = 10.0
 """Times what rounding explains: a smaller difference tells causes apart badly."""
+
+NUMBER = 10.0
+"""Bits of evidence that a fitted number takes."""
 
 OTHERS = 10
 """Other sets that are told."""
@@ -118,10 +122,10 @@ def _diagnosed(
     if not shared:
         raise InputError(f"{programs[0].name} and {programs[1].name} give no quantity in common")
     results = [with_allowance(batch, evaluated(one, batch)) for one in programs]
-    kept, notes = _finite_states(programs, results, shared)
-    batch, results = part_of(batch, kept), [_part(one, kept) for one in results]
-    evidence = _evidence(batch, results, shared)
-    both = _between(*evidence)
+    kept, notes = finite_states(programs, results, shared)
+    batch, results = part_of(batch, kept), [part_of_result(one, kept) for one in results]
+    evidence = evidence_of(batch, results, shared)
+    both = between(*evidence)
     if not (both.values.any() or both.expected.any()):
         raise InputError(
             f"all results for robot {model.name!r} are zero in every state, by both programs: nothing was compared; "
@@ -132,7 +136,7 @@ def _diagnosed(
     found = _Found()
     if differs:
         found = _explained(programs, evidence, progress)
-        found.dependence = () if found.causes else dependence(programs, both)
+        found.dependence = () if found.causes else (*found.alone, *dependence(programs, both))
         if before.max() < BARELY:
             notes.append("the difference is barely more than rounding explains: many a cause would be as good")
     elif notes:
@@ -172,6 +176,7 @@ class _Found:
         rounding: of the recursion under the causes.
         tried: hypotheses.
         dependence: what the difference depends on.
+        alone: causes of one program, where what the other does is unexplained.
     """
 
     causes: list[Cause] = field(default_factory=list)
@@ -181,6 +186,7 @@ class _Found:
     rounding: Array | float = 0.0
     tried: int = 0
     dependence: tuple[str, ...] = ()
+    alone: tuple[str, ...] = ()
 
 
 def _explained(programs: Sequence[Implementation], evidence: Sequence[Evidence], progress: Progress | None) -> _Found:
@@ -194,7 +200,7 @@ def _explained(programs: Sequence[Implementation], evidence: Sequence[Evidence],
         search = Search(own, base, hypotheses, progress)
         explanations = search.run()
         found.tried += search.tried
-        if not explanations or not explanations[0].explains:
+        if not explanations or not explanations[0].explains or _by_chance(explanations[0], own, search.tried):
             unexplained = True
             found.near += _near_misses(search, explanations, program)
             continue
@@ -205,61 +211,16 @@ def _explained(programs: Sequence[Implementation], evidence: Sequence[Evidence],
         found.changes += sign * (values - own.expected)
         found.rounding += own.rounding * growth(values, own.expected)
     if unexplained:
+        found.alone = tuple(
+            f"{one.sentence}: {one.program} does nothing else otherwise than the recursion" for one in found.causes
+        )
         found.causes, found.others = [], []
     return found
 
 
-def _evidence(batch: Batch, results: Sequence[Evaluation], quantities: tuple[str, ...]) -> list[Evidence]:
-    """Each program beside the recursion."""
-    expected = flat(dict(batch.recursion[0].items()), quantities)
-    rounding = spread(default_allowance(batch), quantities)
-    return [
-        Evidence(
-            batch,
-            quantities,
-            flat(dict(one.values), quantities),
-            expected,
-            spread(dict(one.allowance or {}), quantities),
-            rounding,
-        )
-        for one in results
-    ]
-
-
-def _between(subject: Evidence, reference: Evidence) -> Evidence:
-    """One program beside the other, without any line of the recursion."""
-    return replace(
-        subject,
-        expected=reference.values,
-        tolerance=subject.tolerance + reference.tolerance,
-        rounding=np.zeros_like(subject.rounding),
-    )
-
-
-def _finite_states(
-    programs: Sequence[Implementation], results: Sequence[Evaluation], quantities: Sequence[str]
-) -> tuple[NDArray[np.int64], list[str]]:
-    """The states in which all results are numbers; and what is to be said of the others."""
-    finite = [np.isfinite(flat(dict(one.values), quantities)).all(axis=1) for one in results]
-    notes = []
-    for program, own in zip(programs, finite, strict=True):
-        if not own.all():
-            first = int(np.argmin(own))
-            notes.append(
-                f"{program.name} has no number in {int((~own).sum())} states, first {first}: these are left out"
-            )
-    kept = np.flatnonzero(np.logical_and.reduce(finite))
-    if not len(kept):
-        raise InputError(f"no state has numbers of both programs: {'; '.join(notes)}")
-    return kept, notes
-
-
-def _part(result: Evaluation, rows: NDArray[np.int64]) -> Evaluation:
-    values, allowance = (
-        {key: x[rows] for key, x in (arrays or {}).items()} for arrays in (result.values, result.allowance)
-    )
-    joint = None if result.tau_joint is None else result.tau_joint[rows]
-    return Evaluation(values, allowance, joint)
+def _by_chance(own: Explanation, evidence: Evidence, tried: int) -> bool:
+    """Whether the differences say so little that one of so many hypotheses was bound to fit."""
+    return bits(evidence) < len(own.hypotheses) * math.log2(tried + 1) + NUMBER * own.fitted
 
 
 def _causes(found: Explanation, program: Implementation) -> list[Cause]:
