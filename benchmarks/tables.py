@@ -347,7 +347,7 @@ def faults() -> Lines:
         "",
         *table(["", "planted", "detected", "named", "the same in other words", "together"], rows),
         "",
-        f"{counts['clean']:,} clean results, half of them printed to six digits: {counts['false alarms']} false "
+        f"{counts['clean']:,} clean results, half of them printed to six digits: {counts.get('false alarms', 0)} false "
         "alarms. "
         f"`rttrr-pin diagnose` with one fault in {times['rows'][0]['states']} states, start included "
         f"(`python benchmarks/diagnose_time.py`): "

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import rttrr_pin
@@ -80,6 +80,20 @@ def computed(expression: Expression, x: list[Any], over: str) -> Any:
     return values[0].function(op) if over == "nodes" and isinstance(values[0], Node) else function(values[0])
 
 
+def makes_constants(expression: Expression) -> bool:
+    """Whether a sum or a function of constants alone is inside: their values need be no powers of two."""
+    if not isinstance(expression, tuple) or expression[0] == "x":
+        return False
+    kind, *parts = expression
+    constant = not any(has_input(part) for part in parts)
+    return (constant and kind not in ("*", "neg")) or any(makes_constants(part) for part in parts)
+
+
+def has_input(expression: Expression) -> bool:
+    """Whether an input is inside."""
+    return isinstance(expression, tuple) and (expression[0] == "x" or any(has_input(part) for part in expression[1:]))
+
+
 def recorded(expression: Expression) -> tuple[Graph, int]:
     graph = Graph()
     x = [Node(graph, graph.input(k)) for k in range(INPUTS)]
@@ -102,6 +116,7 @@ def test_folding_changes_no_number(expression: Expression, x: list[int]) -> None
 @given(expressions(POWERS, functions=True), st.lists(FLOATS, min_size=INPUTS, max_size=INPUTS))
 def test_folding_rounds_no_number_otherwise(expression: Expression, x: list[float]) -> None:
     """Any floats: signs, zeros, ones and powers of two move without a rounding."""
+    assume(not makes_constants(expression))
     arrays = [np.array([value]) for value in x]
     with np.errstate(over="ignore", invalid="ignore"):
         straight = computed(expression, arrays, "numbers")
