@@ -67,7 +67,7 @@ def hypothesis(error: Mutation, model: Model, link: int | None = None) -> Hypoth
 
 def sentences(error: Mutation, model: Model, link: int | None) -> tuple[str, str]:
     """What a program with the error does, and what to do about it."""
-    term, around = term_of(error)
+    term, around = term_of(at(error, None))
     operator, wrong, right = error.operator, "", ""
     if swapped := TAKEN.fullmatch(operator):
         operator, term = "take", around
