@@ -92,7 +92,7 @@ def test_results_that_are_no_numbers_are_no_agreement(arm: Robot) -> None:
 
     found = diagnose(arm, Wrong(arm, change), n_states=40)
     assert found.verdict == "unexplained" and not found.passed
-    assert any("state" in line and "5" in line for line in found.dependence)
+    assert any("1 state," in note and "first 5" in note for note in found.notes) and found.dependence
     with pytest.raises(InputError):
         diagnose(arm, Wrong(arm, lambda batch, tau: tau * np.nan), n_states=10)
 

@@ -9,7 +9,6 @@ from functools import cached_property
 import numpy as np
 
 from rttrr_pin.core.model import Model
-from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.diagnosis.evidence import Evidence, flat, screened, spread
 from rttrr_pin.diagnosis.fitting import Explanation
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
@@ -71,12 +70,7 @@ class Bench:
         self.batch = sample_states(robot, states, seed).states
         self.base = Variant(self.model)
         self.hypotheses = hypotheses_of(self.model)
-        rounding = spread(default_allowance(self.batch), QUANTITIES)
-        keep = np.cumsum([0] + [x.reshape(len(x), -1).shape[1] for x in self.base.evaluate(self.batch).values()])
-        chosen = np.concatenate(
-            [np.arange(keep[QUANTITIES.index(k)], keep[QUANTITIES.index(k) + 1]) for k in quantities]
-        )
-        self.rounding = rounding[:, chosen]
+        self.rounding = spread(default_allowance(self.batch), quantities)
         self.expected = flat(self.base.evaluate(self.batch), quantities)
 
     def evidence(self, values: np.ndarray, tolerance: np.ndarray | None = None) -> Evidence:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from rttrr_pin.core.algebra import Vector
 from rttrr_pin.core.arguments import not_negative
@@ -34,7 +35,7 @@ class Load:
     n: Array
     in_base: bool = False
 
-    def block(self, part: slice) -> Load:
+    def block(self, part: slice | NDArray[np.int64]) -> Load:
         """The same for some states of the batch."""
         f, n = (x if x.ndim == 1 else x[part] for x in (self.f, self.n))
         return Load(self.link, f, n, self.in_base)

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
-from rttrr_pin.diagnosis.evidence import Evidence, flat, loaded, part_of, places, spread
+from rttrr_pin.diagnosis.evidence import Evidence, joined, loaded, places
+from rttrr_pin.diagnosis.gathering import asked
 from rttrr_pin.errors import RttrrError
 from rttrr_pin.exact.enclosures import enclose
 from rttrr_pin.implementations import Batch, Implementation
-from rttrr_pin.implementations.protocol import evaluated
-from rttrr_pin.validation.compare import with_allowance
 from rttrr_pin.validation.comparison import true_parameters
 
 KEPT = 1e-3
@@ -21,9 +21,6 @@ KEPT = 1e-3
 
 ROUND = (1.0, -1.0, 0.5, -0.5)
 """What numbers of a state become, if they cannot become 0."""
-
-Seen = tuple[Array, Array, Array]
-"""The subject's values, those of the reference, and error / tolerance, (N, numbers) each."""
 
 
 def counterexample(programs: Sequence[Implementation], evidence: Evidence) -> str:
@@ -37,77 +34,55 @@ def counterexample(programs: Sequence[Implementation], evidence: Evidence) -> st
     nonzero = sum((getattr(batch, name)[failing] != 0.0).sum(axis=1) for name in "qva")
     clear = ratios[failing].max(axis=1) >= KEPT * ratios[failing].max()
     order = np.lexsort((np.arange(len(failing)), nonzero, ~clear))
-    state = _bare(part_of(batch, failing[order[:1]]))
+    found = evidence.part(failing[order[:1]])
     if not any(hasattr(one, "states") for one in programs):
         try:
-            state = _simplest(state, lambda own: _seen(programs, own, evidence.quantities))
-            *values, ratio = _seen(programs, state, evidence.quantities)
+            found = _simplest(replace(found, batch=_bare(found.batch)), programs)
         except RttrrError:  # a program that refuses a simpler state
             return ""
-    else:
-        row = failing[order[:1]]
-        values, ratio = [evidence.values[row], evidence.expected[row]], ratios[row]
-    k = int(np.argmax(ratio[0]))
-    names = ("your program", programs[1].name)
-    got = [(name, float(x[0, k])) for name, x in zip(names, values, strict=True)]
-    return _as_test(state, places(batch.model, evidence.quantities), k, got)
+    k = int(np.argmax(found.of_tolerance(found.expected)[0]))
+    got = [("your program", float(found.values[0, k])), (programs[1].name, float(found.expected[0, k]))]
+    return _as_test(_bare(found.batch), places(batch.model, evidence.quantities), k, got)
 
 
 def _bare(batch: Batch) -> Batch:
     return Batch(batch.model, batch.q, batch.v, batch.a)
 
 
-def _seen(programs: Sequence[Implementation], batch: Batch, quantities: Sequence[str]) -> Seen:
-    results = [with_allowance(batch, evaluated(one, batch)) for one in programs]
-    x, y = (flat(dict(one.values), quantities) for one in results)
-    first, second = (spread(dict(one.allowance or {}), quantities) for one in results)
-    allowed = first + second
-    with np.errstate(divide="ignore", invalid="ignore"):
-        ratio = np.where(x == y, 0.0, np.abs(x - y) / allowed)
-    return x, y, np.where(np.isnan(ratio), np.inf, ratio)
-
-
-def _simplest(state: Batch, ask: Callable[[Batch], Seen]) -> Batch:
+def _simplest(found: Evidence, programs: Sequence[Implementation]) -> Evidence:
     """Zeros where they may be, then round numbers, number by number, as long as the difference stays clear."""
-    model = state.model
-    zero = model.coordinates_at(np.zeros((1, model.nv)))
+    model = found.batch.model
+    least = max(1.0, KEPT * float(found.of_tolerance(found.expected).max()))
     fixed = {first + k for first in model.quaternions for k in range(4)}
-    least = max(1.0, KEPT * float(ask(state)[2].max()))
-    steps: list[Callable[[dict[str, Array]], list[dict[str, Array]]]] = []
-
-    def whole(name: str) -> Callable[[dict[str, Array]], list[dict[str, Array]]]:
-        return lambda own: [own | {name: zero if name == "q" else np.zeros_like(own[name])}]
-
-    def entry(name: str, k: int) -> Callable[[dict[str, Array]], list[dict[str, Array]]]:
-        def options(own: dict[str, Array]) -> list[dict[str, Array]]:
-            x = float(own[name][0, k])
-            chosen = [y for y in (0.0, *ROUND, float(f"{x:.1g}"), float(f"{x:.2g}")) if abs(y) <= abs(x) or y == 0.0]
-            if x == 0.0 or x in chosen[:1]:
-                return []
-            out = []
-            for y in chosen:
-                moved = own[name].copy()
-                moved[0, k] = y
-                out.append(own | {name: moved})
-            return out
-
-        return options
-
-    steps += [whole(name) for name in "vaq"]
+    steps: list[tuple[str, int | None]] = [(name, None) for name in "vaq"]
     steps += [
-        entry(name, k) for name in "vaq" for k in range(getattr(state, name).shape[1]) if name != "q" or k not in fixed
+        (name, k) for name in "vaq" for k in range(getattr(found.batch, name).shape[1]) if name != "q" or k not in fixed
     ]
-    own = {name: getattr(state, name) for name in "qva"}
-    for step in steps:
-        options = step(own)
-        if not options:
-            continue
-        q, v, a = (np.concatenate([one[name] for one in options]) for name in "qva")
-        ratios = ask(Batch(model, q, v, a))[2].max(axis=1)
-        good = np.flatnonzero(ratios >= least)
-        if len(good):
-            own = options[int(good[0])]
-    return Batch(model, own["q"], own["v"], own["a"])
+    for name, k in steps:
+        options = _options(found.batch, name, k)
+        if options:
+            seen = asked(programs, joined(options), found.quantities)
+            good = np.flatnonzero(seen.of_tolerance(seen.expected).max(axis=1) >= least)
+            found = seen.part(good[:1]) if len(good) else found
+    return found
+
+
+def _options(state: Batch, name: str, k: int | None) -> list[Batch]:
+    """The state with simpler numbers in q, v or a, in one place or in all, the simplest first."""
+    own = getattr(state, name)
+    if k is None:
+        zero = np.zeros((1, state.model.nv))
+        return [_with(state, name, state.model.coordinates_at(zero) if name == "q" else zero)]
+    x = float(own[0, k])
+    simpler = [y for y in (0.0, *ROUND, float(f"{x:.1g}"), float(f"{x:.2g}")) if abs(y) <= abs(x)]
+    at_k = np.arange(own.shape[1]) == k
+    return [_with(state, name, np.where(at_k, y, own)) for y in simpler] if x else []
+
+
+def _with(state: Batch, name: str, x: Array) -> Batch:
+    """The state with other numbers in q, v or a."""
+    q, v, a = (x if own == name else getattr(state, own) for own in "qva")
+    return Batch(state.model, q, v, a)
 
 
 def _as_test(state: Batch, labels: Sequence[tuple[str, str]], k: int, of_programs: Sequence[tuple[str, float]]) -> str:

@@ -9,12 +9,11 @@ import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.payload import Load
-from rttrr_pin.diagnosis.evidence import Evidence, flat, loaded, places, results, spread
+from rttrr_pin.diagnosis.evidence import Evidence, loaded, places, results
 from rttrr_pin.diagnosis.fitting import EQUATIONS
-from rttrr_pin.errors import ImplementationError, RttrrError
+from rttrr_pin.diagnosis.gathering import asked
+from rttrr_pin.errors import ImplementationError, RttrrError, listed
 from rttrr_pin.implementations import Batch, Implementation
-from rttrr_pin.implementations.protocol import evaluated
-from rttrr_pin.validation.compare import with_allowance
 from rttrr_pin.validation.sampling import Sampler
 
 POSES = 4
@@ -29,8 +28,8 @@ ALIKE = 1e-6
 FULL = 10
 """Numbers of the largest causes: the inertial parameters of a link."""
 
-Differences = Callable[[Batch], tuple[Array, Array]]
-"""The difference of two programs, (N, numbers), and what rounding explains of it."""
+Ask = Callable[[Array, Array, Array], Evidence]
+"""Two programs at q, v, a, without payload."""
 
 
 def dependence(programs: Sequence[Implementation], evidence: Evidence) -> tuple[str, ...]:
@@ -46,7 +45,7 @@ def dependence(programs: Sequence[Implementation], evidence: Evidence) -> tuple[
     if any(hasattr(one, "states") for one in programs):
         return (where, *_of_rows(evidence))
     try:
-        return (where, *_asked(_differences(programs, evidence.quantities), evidence))
+        return (where, *_asked(programs, evidence))
     except RttrrError as error:
         return (where, f"how it changes with the state could not be asked: {error}")
 
@@ -59,66 +58,41 @@ def _where(evidence: Evidence) -> str:
     agreeing = [place for place in dict.fromkeys(labels) if place not in differing]
     if not agreeing:
         return "it differs at every joint and link"
-    text = _listed([f"{key} of {at}" for key, at in differing])
-    return f"it differs in {text}; not in {_listed([f'{key} of {at}' for key, at in agreeing])}"
+    text, others = (listed(f"{key} of {at}" for key, at in own) for own in (differing, agreeing))
+    return f"it differs in {text}; not in {others}"
 
 
-def _listed(words: Sequence[str], most: int = 6) -> str:
-    more = f" and {len(words) - most} more" if len(words) > most else ""
-    return ", ".join(words[:most]) + more
-
-
-def _differences(programs: Sequence[Implementation], quantities: Sequence[str]) -> Differences:
-    def ask(batch: Batch) -> tuple[Array, Array]:
-        found = [with_allowance(batch, evaluated(one, batch)) for one in programs]
-        x, y = (flat(dict(one.values), quantities) for one in found)
-        first, second = (spread(dict(one.allowance or {}), quantities) for one in found)
-        for program, own in zip(programs, (x, y), strict=True):
-            if not np.isfinite(own).all():
-                raise ImplementationError(f"{program.name} has no number at some of the states it was asked at")
-        return x - y, first + second
-
-    return ask
-
-
-def _asked(ask: Differences, evidence: Evidence) -> list[str]:
+def _asked(programs: Sequence[Implementation], evidence: Evidence) -> list[str]:
     """How the difference changes with rates, accelerations, coordinates and payload."""
     model = evidence.batch.model
     drawn = Sampler(model).draw(0, POSES)
-    q, v, a = drawn.q, drawn.v, drawn.a
-    still = np.zeros_like(v)
-    loads = tuple(map(_largest, evidence.batch.loads))
+    q, v, a, still = drawn.q, drawn.v, drawn.a, np.zeros_like(drawn.v)
 
-    def at(q: Array, v: Array, a: Array) -> tuple[Array, Array]:
+    def ask(batch: Batch) -> Evidence:
+        found = asked(programs, batch, evidence.quantities)
+        for program, own in zip(programs, (found.values, found.expected), strict=True):
+            if not np.isfinite(own).all():
+                raise ImplementationError(f"{program.name} has no number at some of the states it was asked at")
+        return found
+
+    def at(q: Array, v: Array, a: Array) -> Evidence:
         return ask(Batch(model, q, v, a))
 
     whole, again = at(q, v, a), at(q, v, a)
-    if (np.abs(whole[0] - again[0]) > whole[1] + again[1]).any():
+    if (np.abs(whole.difference - again.difference) > whole.tolerance + again.tolerance).any():
         return ["it is another one when the same states are asked again: a program is not deterministic"]
-    rest, allowed = at(q, still, still)
-    lines = ["it is there at rest" if _clear(rest, allowed) else "it is zero at rest"]
-    lines += _of_rates(at, q, v, still)
-    lines += _of_accelerations(at, q, a, still)
-    of_v, of_a = at(q, v, still), at(q, still, a)
-    mixed = whole[0] - of_v[0] - of_a[0] + rest
-    if _clear(mixed, whole[1] + of_v[1] + of_a[1] + allowed):
+    rest, of_v, of_a = at(q, still, still), at(q, v, still), at(q, still, a)
+    lines = ["it is there at rest" if _clear(rest) else "it is zero at rest"]
+    lines.append(_of_rates(rest, of_v, at(q, 2 * v, still), at(q, -v, still)))
+    lines.append(_of_accelerations(rest, of_a, at(q, still, 2 * a)))
+    if _clear(_sum((1, whole), (-1, of_v), (-1, of_a), (1, rest))):
         lines.append("rates and accelerations do not simply add up")
-    moving = []
-    for k, name in enumerate(model.v_names):
-        displacement = np.zeros_like(v)
-        displacement[:, k] = 0.5
-        if model.nq != model.nv:
-            break
-        moved = at(q + displacement, v, a)
-        if _clear(moved[0] - whole[0], moved[1] + whole[1]):
-            moving.append(name)
     if model.nq == model.nv:
-        lines.append(
-            f"it changes with the coordinate of {_listed(moving)}" if moving else "it changes with no coordinate"
-        )
-    if loads:
-        loaded = ask(Batch(model, q, v, a, loads[:1]))
-        changes = _clear(loaded[0] - whole[0], loaded[1] + whole[1])
+        steps = zip(model.v_names, 0.5 * np.eye(model.nv), strict=True)
+        moving = [name for name, step in steps if _clear(_sum((1, at(q + step, v, a)), (-1, whole)))]
+        lines.append(f"it changes with {f'the coordinate of {listed(moving)}' if moving else 'no coordinate'}")
+    if evidence.batch.loads:
+        changes = _clear(_sum((1, ask(Batch(model, q, v, a, (_largest(evidence.batch.loads[0]),)))), (-1, whole)))
         lines.append("it changes with the payload" if changes else "the payload does not change it")
     return lines
 
@@ -129,30 +103,24 @@ def _largest(load: Load) -> Load:
     return load if load.f.ndim == 1 else replace(load, f=load.f[np.argmax(sizes)], n=load.n[np.argmax(sizes)])
 
 
-def _of_rates(at: Callable[[Array, Array, Array], tuple[Array, Array]], q: Array, v: Array, still: Array) -> list[str]:
-    rest, once, twice, back = (at(q, x, still) for x in (still, v, 2 * v, -v))
-    first, second, reverse = (x[0] - rest[0] for x in (once, twice, back))
-    allowed = once[1] + twice[1] + back[1] + rest[1]
-    if not _clear(first, allowed) and not _clear(second, allowed):
-        return ["rates do not change it"]
-    if _same(second, 4 * first, allowed) and _same(reverse, first, allowed):
-        return ["it is quadratic in the rates"]
-    if _same(second, 2 * first, allowed) and _same(reverse, -first, allowed):
-        return ["it is linear in the rates"]
-    if _same(second, first, allowed) and _same(reverse, -first, allowed):
-        return ["it has the sign of the rates, whatever their size"]
-    return ["it changes with the rates, neither linearly nor as their square"]
+def _of_rates(rest: Evidence, once: Evidence, twice: Evidence, back: Evidence) -> str:
+    first, second, reverse = (_sum((1, own), (-1, rest)) for own in (once, twice, back))
+    if not _clear(first) and not _clear(second):
+        return "rates do not change it"
+    if _same(second, 4, first) and _same(reverse, 1, first):
+        return "it is quadratic in the rates"
+    if _same(second, 2, first) and _same(reverse, -1, first):
+        return "it is linear in the rates"
+    if _same(second, 1, first) and _same(reverse, -1, first):
+        return "it has the sign of the rates, whatever their size"
+    return "it changes with the rates, neither linearly nor as their square"
 
 
-def _of_accelerations(
-    at: Callable[[Array, Array, Array], tuple[Array, Array]], q: Array, a: Array, still: Array
-) -> list[str]:
-    rest, once, twice = (at(q, still, x) for x in (still, a, 2 * a))
-    first, second = once[0] - rest[0], twice[0] - rest[0]
-    allowed = once[1] + twice[1] + rest[1]
-    if not _clear(first, allowed) and not _clear(second, allowed):
-        return ["accelerations do not change it"]
-    return ["it is linear in the accelerations" if _same(second, 2 * first, allowed) else "it is not linear in a"]
+def _of_accelerations(rest: Evidence, once: Evidence, twice: Evidence) -> str:
+    first, second = (_sum((1, own), (-1, rest)) for own in (once, twice))
+    if not _clear(first) and not _clear(second):
+        return "accelerations do not change it"
+    return "it is linear in the accelerations" if _same(second, 2, first) else "it is not linear in a"
 
 
 def _of_rows(evidence: Evidence) -> list[str]:
@@ -178,9 +146,21 @@ def _of_rows(evidence: Evidence) -> list[str]:
     return lines
 
 
-def _clear(change: Array, allowed: Array) -> bool:
+Difference = tuple[Array, Array]
+"""Of two programs, and what rounding explains of it, (N, numbers) each."""
+
+
+def _sum(*terms: tuple[int, Evidence]) -> Difference:
+    """The differences at several states, added up, (N, numbers), and what rounding explains of it."""
+    return sum(sign * own.difference for sign, own in terms), sum(own.tolerance for _, own in terms)  # type: ignore[return-value]
+
+
+def _clear(found: Evidence | Difference) -> bool:
+    change, allowed = found if isinstance(found, tuple) else _sum((1, found))
     return bool((np.abs(change) > CLEAR * allowed).any())
 
 
-def _same(x: Array, y: Array, allowed: Array) -> bool:
-    return bool((np.abs(x - y) <= CLEAR * allowed + ALIKE * np.abs(y).max()).all())
+def _same(own: Difference, times: int, other: Difference) -> bool:
+    """Whether one is so many times another."""
+    x, y = own[0], times * other[0]
+    return bool((np.abs(x - y) <= CLEAR * (own[1] + other[1]) + ALIKE * np.abs(y).max()).all())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +14,7 @@ from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import LINK_QUANTITIES
 from rttrr_pin.diagnosis.variant import Values
 from rttrr_pin.implementations.protocol import Batch
+from rttrr_pin.validation.compare import labels, ratio
 
 MOST_TIMES = 2.0**60
 """More than that a difference is not said to be times rounding."""
@@ -54,28 +55,27 @@ class Evidence:
 
     def of_tolerance(self, predicted: Array, growth: Array | float = 1.0) -> Array:
         """|values - predicted| over what rounding explains, where terms are `growth` times as large, (N, numbers)."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            error = np.abs(self.values - predicted)
-            ratio = np.where(error == 0.0, 0.0, error / (self.tolerance + self.rounding * growth))
-        return np.where(np.isnan(ratio), np.inf, ratio)
+        return ratio(np.abs(self.values - predicted), self.tolerance + self.rounding * growth)
 
 
 def results(evidence: Evidence) -> int:
     """How many results there are to fit numbers to: of equal states one, and none where all that is seen is zero."""
-    batch = evidence.batch
-    loads = [np.broadcast_to(x, (len(batch), 3)) for load in batch.loads for x in (load.f, load.n)]
-    states = np.unique(np.hstack([batch.q, batch.v, batch.a, *loads]), axis=0)
     bound = evidence.tolerance + evidence.rounding
     seen = (np.maximum(np.abs(evidence.values), np.abs(evidence.expected)) > bound).any(axis=0)
-    return len(states) * int(seen.sum())
+    return len(_different(evidence.batch)) * int(seen.sum())
 
 
 def bits(evidence: Evidence) -> float:
     """How much the differences say: of each result, by how many powers of two it is more than rounding explains."""
-    batch = evidence.batch
+    ratios = evidence.of_tolerance(evidence.expected)[_different(evidence.batch)]
+    return float(np.log2(np.clip(ratios, 1.0, MOST_TIMES)).sum())
+
+
+def _different(batch: Batch) -> NDArray[np.int64]:
+    """The states, of equal ones the first."""
     loads = [np.broadcast_to(x, (len(batch), 3)) for load in batch.loads for x in (load.f, load.n)]
-    _, first = np.unique(np.hstack([batch.q, batch.v, batch.a, *loads]), axis=0, return_index=True)
-    return float(np.log2(np.clip(evidence.of_tolerance(evidence.expected)[first], 1.0, MOST_TIMES)).sum())
+    rows = np.unique(np.hstack([batch.q, batch.v, batch.a, *loads]), axis=0, return_index=True)[1]
+    return np.asarray(rows, dtype=np.int64)
 
 
 def flat(values: Values, quantities: Sequence[str]) -> Array:
@@ -97,23 +97,14 @@ def rms(x: Array) -> Array:
 
 def places(model: Model, quantities: Sequence[str]) -> list[tuple[str, str]]:
     """Quantity, and link or joint, of each number."""
-    labels: list[tuple[str, str]] = []
-    for key in quantities:
-        if key == "tau":
-            labels += [(key, name) for name in model.v_names]
-        else:
-            labels += [(key, name) for name in model.link_names for _ in range(3)]
-    return labels
+    every = [(key, at) for key, at, _ in labels(model) for _ in range(3 if key in LINK_QUANTITIES else 1)]
+    return [own for own in every if own[0] in quantities]
 
 
 def part_of(batch: Batch, rows: NDArray[np.int64]) -> Batch:
     """Some of the states of a batch."""
-    loads = tuple(replace(own, f=_rows(own.f, rows), n=_rows(own.n, rows)) for own in batch.loads)
+    loads = tuple(own.block(rows) for own in batch.loads)
     return Batch(batch.model, batch.q[rows], batch.v[rows], batch.a[rows], loads)
-
-
-def _rows(x: Array, rows: NDArray[np.int64]) -> Array:
-    return x if x.ndim == 1 else x[rows]
 
 
 def joined(batches: Sequence[Batch]) -> Batch:

@@ -12,7 +12,7 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.diagnosis.evidence import Evidence, results, rms
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.minimax import minimax
-from rttrr_pin.diagnosis.predictions import applied, jacobian, predicted, predicted_all
+from rttrr_pin.diagnosis.predictions import applied, jacobian, predicted_all
 from rttrr_pin.diagnosis.variant import Variant
 
 CLOSE = 4.0
@@ -115,9 +115,8 @@ class Fitting:
         weight /= weight.max()
         best = self.judged(hypotheses, numbers, evidence)
         for k in range(ITERATIONS if numbers else 0):
-            base = predicted(applied(self.base, hypotheses, numbers), evidence)
             aim = towards if k == 0 and start is None else numbers
-            J = jacobian(self.base, hypotheses, numbers, aim, evidence, base)
+            base, J = jacobian(self.base, hypotheses, numbers, aim, evidence)
             rest = ((evidence.values - base) * weight).ravel()
             if not (np.isfinite(J).all() and np.isfinite(rest).all()):
                 break
@@ -134,8 +133,7 @@ class Fitting:
 
     def _closer(self, own: Explanation, evidence: Evidence) -> Explanation:
         """The same fitted in the largest error."""
-        base = predicted(applied(self.base, own.hypotheses, own.numbers), evidence)
-        J = jacobian(self.base, own.hypotheses, own.numbers, own.numbers, evidence, base)
+        base, J = jacobian(self.base, own.hypotheses, own.numbers, own.numbers, evidence)
         bound = np.maximum(evidence.tolerance + evidence.rounding, np.finfo(float).tiny)
         step = minimax(J, (evidence.values - base).ravel(), bound.ravel())
         if step is None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +10,9 @@ from numpy.typing import NDArray
 from rttrr_pin.diagnosis.evidence import Evidence, flat, spread
 from rttrr_pin.errors import InputError
 from rttrr_pin.implementations import Batch, Evaluation, Implementation, default_allowance
+from rttrr_pin.implementations.protocol import evaluated
+from rttrr_pin.reporting.results import counted
+from rttrr_pin.validation.compare import with_allowance
 
 
 def evidence_of(batch: Batch, results: Sequence[Evaluation], quantities: tuple[str, ...]) -> list[Evidence]:
@@ -30,14 +32,16 @@ def evidence_of(batch: Batch, results: Sequence[Evaluation], quantities: tuple[s
     ]
 
 
-def between(subject: Evidence, reference: Evidence) -> Evidence:
+def asked(programs: Sequence[Implementation], batch: Batch, quantities: tuple[str, ...]) -> Evidence:
+    """What two programs say of these states, one beside the other."""
+    return between(batch, [with_allowance(batch, evaluated(one, batch)) for one in programs], quantities)
+
+
+def between(batch: Batch, results: Sequence[Evaluation], quantities: tuple[str, ...]) -> Evidence:
     """One program beside the other, without any line of the recursion."""
-    return replace(
-        subject,
-        expected=reference.values,
-        tolerance=subject.tolerance + reference.tolerance,
-        rounding=np.zeros_like(subject.rounding),
-    )
+    values, expected = (flat(dict(one.values), quantities) for one in results)
+    own, other = (spread(dict(one.allowance or {}), quantities) for one in results)
+    return Evidence(batch, quantities, values, expected, own + other, np.zeros_like(own))
 
 
 def finite_states(
@@ -50,7 +54,7 @@ def finite_states(
         if not own.all():
             first = int(np.argmin(own))
             notes.append(
-                f"{program.name} has no number in {int((~own).sum())} states, first {first}: these are left out"
+                f"{program.name} has no number in {counted(int((~own).sum()), 'state')}, first {first}: left out"
             )
     kept = np.flatnonzero(np.logical_and.reduce(finite))
     if not len(kept):

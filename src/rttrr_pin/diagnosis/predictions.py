@@ -74,12 +74,8 @@ def raw_changes(outer: Variant, hypotheses: Sequence[Hypothesis], evidence: Evid
     errors = [own.mutation for own in hypotheses if own.mutation is not None]
     wrong = together(errors, outer.model, outer.given(evidence.batch), outer.mutations)
     others = [own for own in hypotheses if own.mutation is None and own.parameters is None]
-    moved = {id(own): _steps(own) for own in others if own.start}
-    variants = [outer]
-    for own in others:
-        variants += (
-            [own.apply(outer, numbers) for numbers, _ in moved[id(own)]] if own.start else [own.apply(outer, ())]
-        )
+    steps = {id(own): list(_moved(own.neutral, own.start)) or [((), 1.0)] for own in others}
+    variants = [outer, *(own.apply(outer, numbers) for own in others for numbers, _ in steps[id(own)])]
     base, *computed = predicted_all(variants, evidence)
     results = iter(computed)
     any_parameters = any(own.parameters is not None for own in hypotheses)
@@ -91,18 +87,12 @@ def raw_changes(outer: Variant, hypotheses: Sequence[Hypothesis], evidence: Evid
                 change = (flat(outer.shown(evidence.batch, next(wrong)), evidence.quantities) - base).ravel()
             elif own.parameters is not None:
                 change = own.parameters @ columns
-            elif own.start:
-                change = np.array([(next(results) - base).ravel() / step for _, step in moved[id(own)]])
             else:
-                change = (next(results) - base).ravel()
+                rows = [(next(results) - base).ravel() / step for _, step in steps[id(own)]]
+                change = np.array(rows) if own.start else rows[0]
         if np.isfinite(change).all():
             found.append((own, change))
     return found
-
-
-def _steps(own: Hypothesis) -> list[tuple[tuple[float, ...], float]]:
-    """The numbers with one of them moved towards the start, and by how much, one after the other."""
-    return list(_moved(own.neutral, own.start))
 
 
 def visible_changes(raw: Sequence[Raw], evidence: Evidence, scale: Array) -> list[Change]:
@@ -129,13 +119,13 @@ def jacobian(
     at: Sequence[float],
     towards: Sequence[float],
     evidence: Evidence,
-    base: Array,
-) -> Array:
-    """By secants, how the results change with each fitted number, (fitted, numbers); `base` is what they are there."""
+) -> tuple[Array, Array]:
+    """The results, (N, numbers), and by secants how they change with each fitted number, (fitted, numbers)."""
     steps = list(_moved(at, towards))
-    values = predicted_all([applied(outer, hypotheses, numbers) for numbers, _ in steps], evidence)
+    programs = [applied(outer, hypotheses, numbers) for numbers in (at, *(numbers for numbers, _ in steps))]
+    base, *values = predicted_all(programs, evidence)
     rows = [(own - base).ravel() / step for own, (_, step) in zip(values, steps, strict=True)]
-    return np.array(rows).reshape(len(at), -1)
+    return base, np.array(rows).reshape(len(at), -1)
 
 
 def _moved(at: Sequence[float], towards: Sequence[float]) -> Iterator[tuple[tuple[float, ...], float]]:

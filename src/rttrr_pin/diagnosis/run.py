@@ -16,7 +16,7 @@ from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.diagnosis.conventions import conventions
 from rttrr_pin.diagnosis.counterexample import counterexample
 from rttrr_pin.diagnosis.dependence import dependence
-from rttrr_pin.diagnosis.evidence import Evidence, bits, part_of, places
+from rttrr_pin.diagnosis.evidence import Evidence, bits, part_of, places, rms
 from rttrr_pin.diagnosis.fitting import Explanation, growth
 from rttrr_pin.diagnosis.gathering import between, evidence_of, finite_states, part_of_result
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
@@ -36,7 +36,7 @@ from rttrr_pin.implementations import Batch, Implementation, label, make_impleme
 from rttrr_pin.implementations.protocol import evaluated
 from rttrr_pin.implementations.registry import Source
 from rttrr_pin.robot import Robot
-from rttrr_pin.validation.compare import ratio, with_allowance
+from rttrr_pin.validation.compare import labels, ratio, with_allowance
 from rttrr_pin.validation.sampling import Payload
 from rttrr_pin.validation.states import described, model_of, table_of
 
@@ -125,7 +125,7 @@ def _diagnosed(
     kept, notes = finite_states(programs, results, shared)
     batch, results = part_of(batch, kept), [part_of_result(one, kept) for one in results]
     evidence = evidence_of(batch, results, shared)
-    both = between(*evidence)
+    both = between(batch, results, shared)
     if not (both.values.any() or both.expected.any()):
         raise InputError(
             f"all results for robot {model.name!r} are zero in every state, by both programs: nothing was compared; "
@@ -133,27 +133,27 @@ def _diagnosed(
         )
     before = both.of_tolerance(both.expected)
     differs = bool((before > 1.0).any())
-    found = _Found()
-    if differs:
-        found = _explained(programs, evidence, progress)
-        found.dependence = () if found.causes else (*found.alone, *dependence(programs, both))
-        if before.max() < BARELY:
-            notes.append("the difference is barely more than rounding explains: many a cause would be as good")
-    elif notes:
-        found.dependence = (*notes, "in all other states it is rounding")
+    found = _explained(programs, evidence, progress) if differs else _Found()
+    lines: tuple[str, ...] = ()
+    if differs and not found.causes:
+        lines = (*found.alone, *dependence(programs, both))
+    elif notes and not differs:
+        lines = ("in all other states it is rounding",)
+    if differs and before.max() < BARELY:
+        notes.append("the difference is barely more than rounding explains: many a cause would be as good")
     after = both.difference - (found.changes if found.causes else 0.0)
     left = ratio(np.abs(after), both.tolerance + found.rounding) if found.causes else before
     return Diagnosis(
         robot=model.name,
         subject=label(programs[0]),
         reference=label(programs[1]),
-        verdict="explained" if found.causes else "unexplained" if differs or found.dependence else "agrees",
+        verdict="explained" if found.causes else "unexplained" if differs or lines else "agrees",
         causes=tuple(found.causes),
         others=tuple(found.others),
         residuals=_residuals(both, after, before, left),
         residual_before=float(before.max(initial=0.0)),
         residual_after=float(left.max(initial=0.0)),
-        dependence=found.dependence,
+        dependence=lines,
         near_misses=tuple(sorted(found.near, key=lambda near: -near.explains)[:NEAR_MISSES]),
         counterexample=counterexample(programs, both) if differs else "",
         n_states=len(batch),
@@ -175,7 +175,6 @@ class _Found:
         changes: of the difference, by the causes.
         rounding: of the recursion under the causes.
         tried: hypotheses.
-        dependence: what the difference depends on.
         alone: causes of one program, where what the other does is unexplained.
     """
 
@@ -185,7 +184,6 @@ class _Found:
     changes: Array | float = 0.0
     rounding: Array | float = 0.0
     tried: int = 0
-    dependence: tuple[str, ...] = ()
     alone: tuple[str, ...] = ()
 
 
@@ -250,26 +248,13 @@ def _near_misses(search: Search, sets: Sequence[Explanation], program: Implement
 def _residuals(evidence: Evidence, after: Array, before_ratio: Array, after_ratio: Array) -> tuple[Residual, ...]:
     """Row by row."""
     model = evidence.batch.model
-    labels = places(model, evidence.quantities)
-    units = {name: "N m" if turns else "N" for name, turns in _turning(model)}
+    columns = places(model, evidence.quantities)
     rows: list[Residual] = []
-    for place in dict.fromkeys(labels):
-        own = [k for k, label_ in enumerate(labels) if label_ == place]
-        key, at = place
-        rows.append(
-            Residual(
-                key,
-                at,
-                units[at] if key == "tau" else "N" if key in ("F", "f") else "N m",
-                float(np.sqrt(np.mean(evidence.expected[:, own] ** 2) * len(own))),
-                float(np.abs(evidence.difference[:, own]).max()),
-                float(np.abs(after[:, own]).max()),
-                float(before_ratio[:, own].max()),
-                float(after_ratio[:, own].max()),
-            )
-        )
+    for key, at, unit in labels(model):
+        if key not in evidence.quantities:
+            continue
+        own = [k for k, place in enumerate(columns) if place == (key, at)]
+        sizes = (evidence.difference, after, before_ratio, after_ratio)
+        largest = (float(np.abs(x[:, own]).max()) for x in sizes)
+        rows.append(Residual(key, at, unit, float(np.linalg.norm(rms(evidence.expected[:, own]))), *largest))
     return tuple(rows)
-
-
-def _turning(model: Model) -> list[tuple[str, bool]]:
-    return [pair for joint in model.moving for pair in zip(joint.v_labels(), joint.type.rotations, strict=True)]

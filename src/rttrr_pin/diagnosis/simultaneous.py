@@ -15,13 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rttrr_pin.core.algebra import Matrix, Vector
-from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import blocks
 from rttrr_pin.core.dynamics import bodies
 from rttrr_pin.core.joints.base import JointMotion, JointState
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.newton_euler import LinkMotion
 from rttrr_pin.core.scalars import FLOAT
+from rttrr_pin.diagnosis.evidence import joined
 from rttrr_pin.diagnosis.mutations import ALGEBRA, STEPS, JointTypes, Mutation, body_with, copied, functions
 from rttrr_pin.diagnosis.variant import Values, run
 from rttrr_pin.implementations.protocol import Batch
@@ -111,7 +111,7 @@ class _Patches:
             seen[name] += 1  # each step goes from link to link, outwards from the first, inwards from the last
             return self._patched(name, last - k if name == "inwards" else k, arguments, step(*arguments))
 
-        values = run(self.model, _repeated(batch, self.count), self.base, call)
+        values = run(self.model, joined([batch] * self.count), self.base, call)
         for k in range(self.count):
             yield {key: x[self._rows([k])] for key, x in values.items()}
 
@@ -141,17 +141,6 @@ class _Patches:
         if len(programs) == 1:
             return slice(programs[0] * n, (programs[0] + 1) * n)
         return (np.array(programs)[:, None] * n + np.arange(n)).ravel()
-
-
-def _repeated(batch: Batch, times: int) -> Batch:
-    """The states so many times, one after the other."""
-    q, v, a = (np.tile(x, (times, 1)) for x in (batch.q, batch.v, batch.a))
-    loads = tuple(replace(own, f=_tiled(own.f, times), n=_tiled(own.n, times)) for own in batch.loads)
-    return Batch(batch.model, q, v, a, loads)
-
-
-def _tiled(x: Array, times: int) -> Array:
-    return x if x.ndim == 1 else np.tile(x, (times, 1))
 
 
 def _step_of(own: Mutation) -> str | None:

@@ -8,9 +8,11 @@ from typing import Any
 
 import numpy as np
 
+from rttrr_pin.core.algebra import Vector
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import split_columns
 from rttrr_pin.core.dynamics import Result, bodies
+from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.newton_euler import Call
 from rttrr_pin.core.payload import payloads_of
@@ -74,15 +76,25 @@ class Variant:
         return values
 
 
-def run(model: Model, batch: Batch, mutations: Sequence[Mutation] = (), call: Call = FLOAT.call) -> Values:
-    """The recursion on a batch, of one state or many; what overflows is not finite."""
-    links, arithmetic = bodies(model, FLOAT), replace(FLOAT, call=call)
-    rows = len(batch)
+def run(
+    model: Model,
+    batch: Batch,
+    mutations: Sequence[Mutation] = (),
+    call: Call = FLOAT.call,
+    links: Sequence[Body] | None = None,
+    gravity: Vector | None = None,
+) -> Values:
+    """The recursion on a batch, of one state or many; what overflows is not finite.
+
+    `links` and `gravity`, if not the model's own, may have columns for numbers, one for each state.
+    """
+    links, arithmetic = links or bodies(model, FLOAT), replace(FLOAT, call=call)
     q, v, a = (columns(x) for x in (batch.q, batch.v, batch.a))
     with np.errstate(all="ignore"):
-        result: Result = mutated(mutations)(model, arithmetic, q, v, a, payloads_of(batch.loads, FLOAT), links)
+        loads = payloads_of(batch.loads, FLOAT)
+        result: Result = mutated(mutations)(model, arithmetic, q, v, a, loads, links, gravity)
         numbers: list[Any] = result.scalars()
-        table = np.empty((rows, len(numbers)))
+        table = np.empty((len(batch), len(numbers)))
         for column, x in zip(table.T, numbers, strict=True):
             column[:] = x
     return split_columns(model, table, QUANTITIES)

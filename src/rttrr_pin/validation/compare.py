@@ -150,7 +150,7 @@ class Comparison:
         """Prepare to compare these quantities."""
         self.name, self.version = name, version
         self.quantities = tuple(key for key in QUANTITIES if key in quantities)
-        self.rows = tuple(Row(*labels) for labels in _labels(model) if labels[0] in self.quantities)
+        self.rows = tuple(Row(*own) for own in labels(model) if own[0] in self.quantities)
         self.whole = {quantity: Worst() for quantity in self.quantities}
         self._carriers = carriers(model)
         self.zero = {row.quantity for row in self.rows}
@@ -252,7 +252,7 @@ def ratio(part: Array, whole: Array) -> Array:
     return np.where(np.isnan(quotient), np.inf, quotient)
 
 
-def _labels(model: Model) -> Iterator[tuple[str, str, str]]:
+def labels(model: Model) -> Iterator[tuple[str, str, str]]:
     """Quantity, place and unit of each row."""
     for joint in model.moving:
         for name, rotates in zip(joint.v_labels(), joint.type.rotations, strict=True):
