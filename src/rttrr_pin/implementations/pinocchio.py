@@ -37,7 +37,6 @@ from rttrr_pin.core.arrays import Array, norm
 from rttrr_pin.core.joints import CONTINUOUS, PLANAR
 from rttrr_pin.core.model import UNIVERSE, Model
 from rttrr_pin.core.payload import Load
-from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.errors import ImplementationError, ModelMismatchError
 from rttrr_pin.implementations.allowance import of_library, of_other_numbers, sum_inwards
@@ -60,7 +59,7 @@ from rttrr_pin.implementations.pinocchio_model import (
     pin_links,
     snapped_axes,
 )
-from rttrr_pin.implementations.pinocchio_rounding import OPERATIONS, LoadSizes, rounding, turns
+from rttrr_pin.implementations.pinocchio_rounding import LoadSizes, carrying, load_sizes, rounding
 from rttrr_pin.implementations.protocol import Batch, Evaluation
 
 TENSORS = 4
@@ -120,14 +119,14 @@ class Pinocchio:
         loads = self._in_link_axes(batch.loads, motion.q)
         record = self._run(motion, loads)
         F, N = self._net(record)
-        sizes = self._sizes(batch)
+        sizes = load_sizes(self.pin_model, self.links, batch.loads, len(batch))
         behind = self._behind(record, F, N, loads, sizes)
         f, n = self._across_joints(record, behind, loads)
         tau, tau_joint = driving_forces(self.model, self.joints, states, record.tau, has_armature=True)
         values = {"tau": tau, "F": F, "N": N, "f": f, "n": n}
         cancelling = rounding(self.pin_model, self.links, self._apart, record.spatial, self._reach(motion), sizes)
         cancelling["f"][:, self._idle] = cancelling["n"][:, self._idle] = 0.0
-        for key, size in self._carrying(behind, sizes).items():
+        for key, size in carrying(self.links, behind[..., 6], behind[..., 7], sizes).items():
             cancelling[key] += size
         allowance = of_library(batch, values, tau_joint, cancelling)
         if self.built is not self.model:
@@ -148,15 +147,6 @@ class Pinocchio:
                 f, n = (product(turns, x) for x in (f, n))
             out.append(Load(load.link, f, n))
         return out
-
-    def _sizes(self, batch: Batch) -> list[LoadSizes]:
-        """The sizes of the loads; one in base axes was turned over each joint that moves its link."""
-        counts, sizes = turns(self.pin_model), []
-        for load in batch.loads:
-            f, n = (np.broadcast_to(norm(np.atleast_2d(x)), len(batch)) for x in (load.f, load.n))
-            turned = counts[self.links.joint[load.link]] if load.in_base else 0
-            sizes.append(LoadSizes(load.link, f, n, turned))
-        return sizes
 
     def _run(self, motion: Motion, loads: Sequence[Load]) -> _Record:
         """Call `rnea` on each state and keep what it leaves in `data`, whose entries the next call overwrites."""
@@ -207,22 +197,6 @@ class Pinocchio:
             if fixed[load.link]:
                 out[:, load.link] += np.concatenate([load.f, load.n], axis=1)
         return out[..., :3], out[..., 3:]
-
-    def _carrying(self, behind: Array, sizes: Sequence[LoadSizes]) -> dict[str, Array]:
-        """What rounds of f and n across fixed joints on the way to the body's origin and back, (N, links) each.
-
-        In axes that are not quite orthogonal, a vector does not come back as it was: as far as they are apart here, and
-        what our own product rounds.
-        """
-        links, way = self.links, OPERATIONS * EPS
-        there_and_back = 2 * way + (links.stretch + way)
-        force, moment = behind[..., 6], behind[..., 7] + links.arm * behind[..., 6]
-        out = {"f": there_and_back * force, "n": there_and_back * moment}
-        for load in sizes:
-            if links.fixed[load.link]:
-                for key, size in (("f", load.f), ("n", load.n)):
-                    out[key][:, load.link] += way * load.turned * size
-        return out
 
     def _behind(self, record: _Record, F: Array, N: Array, loads: Sequence[Load], sizes: Sequence[LoadSizes]) -> Array:
         """What crosses each fixed joint but the load at its own link, see `_acting`; zero for joints that move."""

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from rttrr_pin.core.arrays import Array, norm
+from rttrr_pin.core.payload import Load
 from rttrr_pin.core.scalars import EPS
 from rttrr_pin.implementations.allowance import add_inwards
 from rttrr_pin.implementations.library import Scales, norms
@@ -44,6 +45,31 @@ def turns(pin_model: Any) -> list[int]:
     for own, parent in zip(oblique(pin_model), pin_model.parents, strict=True):
         counts.append(own + (counts[parent] if counts else 0))
     return counts
+
+
+def load_sizes(pin_model: Any, links: PinLinks, loads: Sequence[Load], rows: int) -> list[LoadSizes]:
+    """The sizes of payloads in so many states; one in base axes was turned over each joint that moves its link."""
+    counts, sizes = turns(pin_model), []
+    for load in loads:
+        f, n = (np.broadcast_to(norm(np.atleast_2d(x)), rows) for x in (load.f, load.n))
+        sizes.append(LoadSizes(load.link, f, n, counts[links.joint[load.link]] if load.in_base else 0))
+    return sizes
+
+
+def carrying(links: PinLinks, force: Array, moment: Array, loads: Sequence[LoadSizes]) -> dict[str, Array]:
+    """What rounds of f and n across fixed joints on the way to the body's origin and back, (N, links) each.
+
+    In axes that are not quite orthogonal, a vector does not come back as it was: as far as they are apart here, and
+    what our own product rounds. `force` and `moment` are the sizes of what crosses each fixed joint, (N, links).
+    """
+    way = OPERATIONS * EPS
+    there_and_back = 2 * way + (links.stretch + way)
+    out = {"f": there_and_back * force, "n": there_and_back * (moment + links.arm * force)}
+    for load in loads:
+        if links.fixed[load.link]:
+            for key, size in (("f", load.f), ("n", load.n)):
+                out[key][:, load.link] += way * load.turned * size
+    return out
 
 
 def rounding(

@@ -21,7 +21,7 @@ from rttrr_pin.core.joints import JOINT_TYPES, JointType
 from rttrr_pin.errors import UrdfError, shortened
 from rttrr_pin.urdf.decimals import Number, NumberList
 from rttrr_pin.urdf.document import UrdfDocument, UrdfJoint, UrdfLink, UrdfMimic, UrdfShape
-from rttrr_pin.urdf.elements import Element, parse_xml
+from rttrr_pin.urdf.elements import Element
 from rttrr_pin.urdf.faults import Log
 from rttrr_pin.urdf.inertial import ENTRIES, Placement, UrdfInertial
 from rttrr_pin.urdf.limits import read_dynamics, read_limit
@@ -29,6 +29,7 @@ from rttrr_pin.urdf.sources import AS_IT_STANDS, AnySource, Reading, find
 from rttrr_pin.urdf.tree import check_mimics, check_tree
 from rttrr_pin.urdf.unused import check_asked, transmissions_of
 from rttrr_pin.urdf.vocabulary import ATTRIBUTES, check_words, not_modelled
+from rttrr_pin.urdf.xml_text import parse_xml
 
 LONGEST_NAME = 10_000
 """Characters."""
