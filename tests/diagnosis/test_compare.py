@@ -25,7 +25,7 @@ from rttrr_pin.diagnosis import Comparison, compare_robots
 from rttrr_pin.validation import Sampler
 from support.recursion import recursion
 from support.robots import BUNDLED
-from support.trees import random_tree
+from support.trees import extreme_tree, random_tree
 
 STATES = 60
 
@@ -149,6 +149,21 @@ def test_a_robot_of_every_joint_type_is_the_same_as_itself(seed: int) -> None:
     robot = rttrr_pin.load(text, friction=seed % 2 > 0, base="floating" if seed % 3 else "fixed")
     result = compare_robots(robot, robot, 20)
     assert result.passed and not result.effects and not result.notes
+
+
+@pytest.mark.parametrize("seed", [1, 2, 18])
+def test_a_robot_of_extreme_numbers_is_the_same_as_itself(seed: int) -> None:
+    """However much of them is rounded away where fixed links are merged."""
+    robot = rttrr_pin.load(extreme_tree(seed, 5))
+    result = compare_robots(robot, robot, 20)
+    assert result.passed and not result.effects
+
+
+def test_progress_counts_differences() -> None:
+    robot, done = rttrr_pin.load("rttrr"), list[int]()
+    other = PLANTED["damping"](PLANTED["mass"](robot.model, 2), 3)
+    result = compare_robots(robot, Robot(other), 20, progress=done.append)
+    assert done == [1, 2] and len(result.effects) == 2
 
 
 @pytest.mark.one_in(3)
@@ -358,7 +373,7 @@ def test_limits_and_friction_that_take_no_part_are_told() -> None:
     assert result.passed
     assert [own.difference.kind for own in result.effects] == ["damping", "friction", "upper limit"]
     taking = compare_robots(rttrr_pin.load(text, friction=True), rttrr_pin.load(other, friction=True), STATES)
-    assert [own.difference.kind for own in taking.mattering] == ["damping", "friction"] or not taking.passed
+    assert [own.difference.kind for own in taking.mattering] == ["damping", "friction"]
 
 
 @pytest.mark.one_in(4)
@@ -370,7 +385,8 @@ def test_random_pairs_never_crash(block: int) -> None:
         models = [rttrr_pin.load(random_tree(int(rng.integers(1000)), int(rng.integers(1, 7)))) for _ in "ab"]
         with suppress(InputError):  # no joint in common
             result = compare_robots(*models, n_states=int(rng.integers(1, 4)), seed=k)
-            assert result.passed in (True, False) and json.dumps(result.to_dict(), allow_nan=False)
+            json.dumps(result.to_dict(), allow_nan=False)
+            assert result.passed == ("PASS" in result.summary())
 
 
 def test_robots_without_a_joint_in_common_are_unusable() -> None:

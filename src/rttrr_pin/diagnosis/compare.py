@@ -20,15 +20,15 @@ from rttrr_pin.diagnosis.effects_of import (
     effect_of,
     first_torques,
     rms,
-    rounding_of,
+    torques_and_bound,
 )
-from rttrr_pin.diagnosis.effects_of import torques as torques_of
-from rttrr_pin.diagnosis.matched import Matched, listed, matched, notes_of
-from rttrr_pin.errors import InputError
+from rttrr_pin.diagnosis.matched import Matched, matched, notes_of
+from rttrr_pin.errors import InputError, listed
 from rttrr_pin.loading import load
 from rttrr_pin.reporting.results import Summarised, finite
 from rttrr_pin.robot import Robot
 from rttrr_pin.urdf.sources import AnySource
+from rttrr_pin.validation.states import Progress
 
 MOST_STATES = 100_000
 """All of them are in memory at once."""
@@ -164,6 +164,7 @@ def compare_robots(
     b: Robot | AnySource,
     n_states: int = 500,
     seed: int = 0,
+    progress: Progress | None = None,
 ) -> Comparison:
     """Say in what two descriptions of one robot differ, and which of it matters for the torques.
 
@@ -177,6 +178,7 @@ def compare_robots(
         b: another description of it.
         n_states: how many states, up to 100,000.
         seed: from 0 to 2^128 - 1; the same seed gives the same states.
+        progress: called with the number of differences whose effect is known.
 
     Returns:
         The differences, sorted by effect, and what none of them explains.
@@ -198,7 +200,12 @@ def compare_robots(
             f"({listed(second.joint_names)}) does: pass two descriptions of one robot"
         )
     torques = first_torques(both.a, both.other.tree, count, whole)
-    effects = [effect_of(own, both.a, torques) for own in both.differences if not own.rounding]
+    effects = list[Effect]()
+    for own in both.differences:
+        if not own.rounding:
+            effects.append(effect_of(own, both.a, torques))
+            if progress is not None:
+                progress(len(effects))
     effects.sort(key=lambda own: (-own.worst, not own.matters))
     printed = sorted((own for own in both.differences if own.rounding), key=lambda own: -own.relative)
     together = None
@@ -229,16 +236,14 @@ def _joints(both: Matched, torques: Torques) -> dict[str, JointTorque]:
         partner[name]: (signs[name] * q, signs[name] * v, signs[name] * a) for name, (q, v, a) in torques.motion.items()
     }
     joints = [partner[name] for name in torques.joints]
-    tau = torques_of(both.b, motion, joints)
-    bound = np.maximum(torques.bound, rounding_of(both.b, motion, joints))
+    tau, bound = torques_and_bound(both.model_b, motion, joints, "second")
+    bound = np.maximum(torques.bound, bound)
     own_signs = [
         signs[joint.name] for joint in both.a.model.joints if joint.name in torques.joints for _ in range(joint.nv)
     ]
     tau = tau * np.array(own_signs)
-    explained = torques.of(all_together(both.a, both.differences))
-    if not np.isfinite(tau).all():
-        raise InputError("the torques of the second robot overflow: its numbers are larger than those of a robot")
-    left, change = tau - explained, tau - torques.tau
+    change = tau - torques.of(both.model_a)
+    left = change - (torques.of(all_together(both.a, both.differences)) - torques.tau)
     most: Array = np.abs(left).max(axis=0, initial=0.0)
     remainder = np.where(most <= REMAINDER * bound, 0.0, rms(left))
     columns = zip(torques.rms, rms(change), np.abs(change).max(axis=0, initial=0.0), remainder, strict=True)

@@ -7,8 +7,6 @@ from typing import Any
 
 import click
 
-from rttrr_pin.diagnosis.compare import compare_robots
-from rttrr_pin.diagnosis.compare_report import show_comparison
 from rttrr_pin.reporting.options import (
     base,
     check_targets,
@@ -21,7 +19,7 @@ from rttrr_pin.reporting.options import (
     seed,
     xacro,
 )
-from rttrr_pin.reporting.output import AGREE, DISAGREE, Output, write_json
+from rttrr_pin.reporting.output import AGREE, DISAGREE, Output, progress, write_json
 from rttrr_pin.validation.options import RunOptions
 
 
@@ -47,13 +45,17 @@ def compare(
 
     Exit code: 0 the same dynamics (limits and names may differ), 1 they differ, 2 unusable input.
     """
+    from rttrr_pin.diagnosis.compare import compare_robots
+    from rttrr_pin.diagnosis.compare_report import show_comparison
+
     options = RunOptions(robot=a, **run)
     other = replace(options, robot=b)
     targets = {"--json": json, "--html": html}
     check_targets(targets, [a, b])
     first, second = (own.load(json, others={"--html": html}) for own in (options, other))
     check_targets(targets, [a, b])
-    result = compare_robots(first, second, n_states=states, seed=options.seed)
+    with progress(None, quiet, "differences") as advance:
+        result = compare_robots(first, second, n_states=states, seed=options.seed, progress=advance)
     result = replace(result, robots=(a, b))
     write_json(json, result.to_dict)
     if html is not None:

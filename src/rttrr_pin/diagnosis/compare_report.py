@@ -13,7 +13,8 @@ from rich.text import Text
 from rttrr_pin.diagnosis.compare import Comparison
 from rttrr_pin.diagnosis.difference import Difference
 from rttrr_pin.diagnosis.effects_of import Effect
-from rttrr_pin.diagnosis.matched import listed
+from rttrr_pin.errors import listed
+from rttrr_pin.reporting.results import counted
 from rttrr_pin.validation.report import drawn, word
 
 MOST_ROWS = 20
@@ -26,8 +27,7 @@ def show_comparison(result: Comparison, console: Console, full: bool = False) ->
     """A row for each difference that matters, lists of those that do not, and the verdict."""
     a, b = result.robots
     console.print(Text(f"{a} against {b}", "bold"), soft_wrap=True)
-    joints = f"{len(result.pairs)} joint{'s' * (len(result.pairs) != 1)} in both"
-    console.print(Text(f"{joints}, {drawn(result.n_states, 'uniform', result.seed)}"), soft_wrap=True)
+    console.print(Text(compared(result)), soft_wrap=True)
     rows = result.mattering if full else result.mattering[:MOST_ROWS]
     if rows:
         console.print(_table(rows))
@@ -40,6 +40,11 @@ def show_comparison(result: Comparison, console: Console, full: bool = False) ->
         console.print(Text(line, "dim"), soft_wrap=True)
     sentence = result.summary().partition(" ")[2]
     console.print(word(result.passed), Text(f"{sentence} ({result.seconds:.1f} s)"), soft_wrap=True)
+
+
+def compared(result: Comparison) -> str:
+    """What was compared: joints and states."""
+    return f"{counted(len(result.pairs), 'joint')} in both, {drawn(result.n_states, 'uniform', result.seed)}"
 
 
 def remarks(result: Comparison, full: bool) -> tuple[str, ...]:
@@ -120,7 +125,7 @@ def _rounding(result: Comparison) -> list[str]:
     if not result.rounding:
         return []
     first, own = result.rounding[0], result.rounding_effect
-    count = f"{len(result.rounding)} number{'s' * (len(result.rounding) != 1)}"
+    count = counted(len(result.rounding), "number")
     changed = (
         "; no torque changes"
         if own is None or not own.matters

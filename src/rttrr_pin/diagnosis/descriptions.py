@@ -94,28 +94,24 @@ def _changed_link(k: int, name: str, key: str, value: Any) -> Change:
 def _member(k: int, joint: str, x: Member, y: Member, tolerance: Tolerance) -> list[Difference]:
     """What differs of a link of a body: where it is fixed, or what it weighs."""
     name = x.link.name
-    moved = Pose(x.pose.R, x.pose.p).inverse @ y.pose
-    seen = link_of(name, Member(y.link, moved).inertia)
-    found = list(_link(x.link, seen, tolerance))
     placed = [
         ("position", tolerance.length(x.pose.p, y.pose.p), x.pose.p, y.pose.p, Pose(x.pose.R, y.pose.p)),
         ("orientation", tolerance.turn(x.pose.R, y.pose.R), rpy(x.pose.R), rpy(y.pose.R), Pose(y.pose.R, x.pose.p)),
     ]
-    if not any(level.differs for _, level, *_ in placed):
-        found = list(_link(x.link, y.link, tolerance))
-    elif found and len(own := list(_link(x.link, y.link, tolerance))) < len(found):
-        at = [
-            difference_of(kind, name, joint, (p, q), level, _placed(k, name, kind, pose))
-            for kind, level, p, q, pose in placed
-            if level.differs
-        ]
-        return at + [
-            difference_of(kind, name, joint, (p, q), level, _changed_link(k, name, key, q))
-            for kind, key, p, q, level in own
-        ]
-    return [
+    at = [
+        difference_of(kind, name, joint, (p, q), level, _placed(k, name, kind, pose))
+        for kind, level, p, q, pose in placed
+        if level.differs
+    ]
+    own = list(_link(x.link, y.link, tolerance))
+    if at:  # the body may be where it was, said in another frame
+        seen = link_of(name, Member(y.link, x.pose.inverse @ y.pose).inertia)
+        found = list(_link(x.link, seen, tolerance))
+        if len(found) <= len(own):
+            at, own = [], found
+    return at + [
         difference_of(kind, name, joint, (p, q), level, _changed_link(k, name, key, q))
-        for kind, key, p, q, level in found
+        for kind, key, p, q, level in own
     ]
 
 

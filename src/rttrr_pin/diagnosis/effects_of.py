@@ -9,14 +9,15 @@ from typing import Any
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.batch import split_columns
-from rttrr_pin.core.dynamics import evaluate, joint_states
+from rttrr_pin.core.dynamics import joint_states
+from rttrr_pin.core.joint import Mimic
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import FLOAT
 from rttrr_pin.diagnosis.difference import Difference
 from rttrr_pin.diagnosis.rigid_tree import RigidTree
+from rttrr_pin.diagnosis.variant import run
 from rttrr_pin.errors import InputError
-from rttrr_pin.exact.rounding import bounded_dynamics
+from rttrr_pin.implementations.protocol import Batch
 from rttrr_pin.validation.sampling import Sampler
 
 ROUNDING = 64.0
@@ -101,35 +102,20 @@ def first_torques(a: RigidTree, b: RigidTree, n_states: int, seed: int) -> Torqu
     """Random states of the first robot, and its torques there; a joint that only the second leads follows as there."""
     model = a.model
     batch = Sampler(model, "uniform", seed).draw(0, n_states)
-    q, v, a_ = batch.q, batch.v.copy(), batch.a.copy()
-    q = q.copy()
-    at_q, at_v = _places(model)
-    full = motion_of(model, q, v, a_)
-    for k, body in enumerate(b.bodies):
-        own, mimic = a.bodies[k].joint, body.joint.mimic
-        if mimic is None or not own.independent or own.nq != 1:
-            continue
-        leader = full[a.bodies[mimic.joint].joint.name]
-        q[:, at_q[k]] = mimic.multiplier * leader[0][:, 0] + mimic.offset
-        v[:, at_v[k]], a_[:, at_v[k]] = mimic.multiplier * leader[1][:, 0], mimic.multiplier * leader[2][:, 0]
-    motion = motion_of(model, q, v, a_)
-    pairs = zip(a.bodies, b.bodies, strict=True)
-    both = tuple(x.joint.name for x, y in pairs if x.joint.independent and y.joint.independent)
+    motion = motion_of(model, batch.q, batch.v, batch.a)
+    pairs = [(x.joint, y.joint) for x, y in zip(a.bodies, b.bodies, strict=True)]
+    led = {x.name: _led(y.mimic, motion, a) for x, y in pairs if y.mimic and x.independent and x.nq == 1}
+    if led:
+        motion = motion_of(model, *_states(model, motion | led))
+    both = tuple(x.name for x, y in pairs if x.independent and y.independent)
     labels = tuple(label for joint in model.moving if joint.name in both for label in joint.v_labels())
-    bound = rounding_of(model, motion, both)
-    tau = torques(model, motion, both)
-    if not np.isfinite(tau).all():
-        raise InputError("the torques of the first robot overflow: its numbers are larger than those of a robot")
-    return Torques(labels, both, motion, tau, bound)
+    return Torques(labels, both, motion, *torques_and_bound(model, motion, both, "first"))
 
 
-def _places(model: Model) -> tuple[dict[int, int], dict[int, int]]:
-    """Where q and v of each joint that moves by itself begin."""
-    at_q, at_v, nq, nv = {}, {}, 0, 0
-    for i in model.independent:
-        at_q[i], at_v[i] = nq, nv
-        nq, nv = nq + model.joints[i].nq, nv + model.joints[i].nv
-    return at_q, at_v
+def _led(mimic: Mimic, motion: Motion, a: RigidTree) -> tuple[Array, Array, Array]:
+    """The motion of a joint that follows one of the first robot."""
+    q, v, a_ = motion[a.bodies[mimic.joint].joint.name]
+    return mimic.multiplier * q + mimic.offset, mimic.multiplier * v, mimic.multiplier * a_
 
 
 def motion_of(model: Model, q: Array, v: Array, a: Array) -> Motion:
@@ -146,12 +132,17 @@ def _stacked(values: Sequence[Any]) -> Array:
     return np.stack([np.asarray(x, dtype=np.float64) for x in values], axis=-1)
 
 
-def rounding_of(model: Model, motion: Motion, joints: Sequence[str]) -> Array:
-    """At most how far rounding takes torques of some joints, (degrees of freedom,), by a running error bound."""
-    with np.errstate(all="ignore"):
-        bounds = bounded_dynamics(model, *_states(model, motion))[1].tau
-    most: Array = np.max(_of_joints(model, joints, bounds), axis=0, initial=0.0)
-    return most
+def torques_and_bound(model: Model, motion: Motion, joints: Sequence[str], which: str) -> tuple[Array, Array]:
+    """Torques of some joints, and at most how far rounding takes them, (degrees of freedom,).
+
+    Raises:
+        InputError: torques overflow, of the robot of that name in the message.
+    """
+    values, bounds = Batch(model, *_states(model, motion)).recursion
+    tau, bound = (_of_joints(model, joints, own.tau) for own in (values, bounds))
+    if not np.isfinite(tau).all():
+        raise InputError(f"the torques of the {which} robot overflow: its numbers are larger than those of a robot")
+    return tau, bound.max(axis=0, initial=0.0)
 
 
 def _states(model: Model, motion: Motion) -> tuple[Array, Array, Array]:
@@ -162,18 +153,7 @@ def _states(model: Model, motion: Motion) -> tuple[Array, Array, Array]:
 
 def torques(model: Model, motion: Motion, joints: Sequence[str]) -> Array:
     """Torques of some joints of a robot, (N, degrees of freedom), by the reference recursion."""
-    q, v, a = _states(model, motion)
-    with np.errstate(all="ignore"):
-        result = evaluate(model, FLOAT, _rows(q), _rows(v), _rows(a)).scalars(("tau",))
-    table = np.empty((max(len(q), 2), len(result)))
-    for column, x in enumerate(result):
-        table[:, column] = np.asarray(x)
-    return _of_joints(model, joints, split_columns(model, table[: len(q)], ("tau",))["tau"])
-
-
-def _rows(x: Array) -> Array:
-    """At least two states, so that scalars are arrays."""
-    return np.repeat(x, 2, axis=0) if len(x) == 1 else x
+    return _of_joints(model, joints, run(model, Batch(model, *_states(model, motion)))["tau"])
 
 
 def _of_joints(model: Model, joints: Sequence[str], tau: Array) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -16,9 +16,7 @@ from rttrr_pin.diagnosis.pairing import Pairs, consistent, pairs_by_name, pairs_
 from rttrr_pin.diagnosis.rigid_tree import RigidTree
 from rttrr_pin.diagnosis.same_frames import Reframed, reframed
 from rttrr_pin.diagnosis.tolerance import Tolerance
-
-MOST_NAMES = 8
-"""In one note."""
+from rttrr_pin.errors import listed
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -28,17 +26,19 @@ class Matched:
     Attributes:
         a: the first, its bodies merged where the second has no such links.
         other: the second in the terms of the first.
-        b: the second, as it is, but for joints that stand still.
+        model_a: the first, as it is, but for joints that stand still; its fixed links are not merged.
+        model_b: the second, likewise.
         pairs: names of joints, first and second, in the order of the first.
         only_a: joints that move and have no counterpart in the second, which stand still at zero.
         only_b: likewise.
         differences: what differs.
-        tree_b: the bodies of `b`, in its own terms.
+        tree_b: the bodies of `model_b`, in its own terms.
     """
 
     a: RigidTree
     other: Reframed
-    b: Model
+    model_a: Model
+    model_b: Model
     pairs: tuple[tuple[str, str], ...]
     only_a: tuple[str, ...]
     only_b: tuple[str, ...]
@@ -81,7 +81,7 @@ def _with(a: Model, b: Model, trees: tuple[RigidTree, RigidTree], pairs: Pairs) 
     tolerance = Tolerance.of(a, b, max(tree_a.length, tree_b.length))
     other = reframed(tree_a, tree_b, own, tolerance)
     first, found = differences(tree_a, other.tree, tolerance)
-    return Matched(first, other, still_b, tuple(names), only_a, only_b, tuple(found), tree_b)
+    return Matched(first, other, still_a, still_b, tuple(names), only_a, only_b, tuple(found), tree_b)
 
 
 def _still(model: Model, names: set[str]) -> tuple[Model, tuple[str, ...]]:
@@ -152,9 +152,3 @@ def _members(x: Matched) -> Iterable[str]:
             yield f"fixed links of the {this} that the {other} has merged: {listed(merged)}"
         if frames:
             yield f"frames without mass that only the {this} has: {listed(frames)}"
-
-
-def listed(names: Sequence[str]) -> str:
-    """The first names, and how many more there are."""
-    more = len(names) - MOST_NAMES
-    return ", ".join(names[:MOST_NAMES]) + (f", and {more} more" if more > 0 else "")

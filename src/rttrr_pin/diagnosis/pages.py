@@ -7,12 +7,12 @@ from collections.abc import Sequence
 
 from rttrr_pin.diagnosis.compare import Comparison
 from rttrr_pin.diagnosis.compare_report import LEGEND, percent, remarks, values_of
+from rttrr_pin.diagnosis.compare_report import compared as compared_robots
 from rttrr_pin.diagnosis.log_diagnosis import LogDiagnosis
 from rttrr_pin.diagnosis.page import Bars, Page, Rows, Said, by_decades, html, of_longest, points
 from rttrr_pin.diagnosis.report import compared, place, sentence, told
 from rttrr_pin.diagnosis.results import Cause, Diagnosis, Residual
 from rttrr_pin.reporting.output import write_text
-from rttrr_pin.validation.report import drawn
 
 ALIKE = "The same results in all of these states would have"
 
@@ -112,14 +112,7 @@ def log_page(report: LogDiagnosis) -> Page:
             Said(own.sentence, (("explains", percent(own.explains)),), own.alternatives) for own in report.causes
         ),
         alike=AS_WELL,
-        tables=(
-            Rows(
-                "Measured less modelled tau, before and after",
-                head,
-                tuple(bars),
-                "N m or N; the bars: part of tau, the lower one with the causes",
-            ),
-        ),
+        tables=(Rows("Measured less modelled tau, before and after", head, tuple(bars), LOG_LEGEND),),
         notes=report.notes,
     )
 
@@ -130,7 +123,7 @@ def comparison_page(result: Comparison) -> Page:
     a, b = result.robots
     return Page(
         title=f"{a} and {b}",
-        compared=f"{len(result.pairs)} joints in both, {drawn(result.n_states, 'uniform', result.seed)}",
+        compared=compared_robots(result),
         verdict=word,
         tone="agrees" if result.passed else "unexplained",
         sentence=rest,

@@ -91,7 +91,7 @@ def _carrier(tree: RigidTree, i: int, known: Pairs) -> int:
 
 def _follows_alone(tree: RigidTree, i: int, known: Pairs) -> bool:
     """Whether it follows a joint that has no counterpart."""
-    mimic = tree.mimic(i)
+    mimic = tree.bodies[i].joint.mimic
     return mimic is not None and mimic.joint not in known
 
 

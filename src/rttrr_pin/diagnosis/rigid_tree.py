@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.joint import Joint, Mimic
+from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.inspection.merged import MergedLink
 
@@ -144,10 +144,6 @@ class RigidTree:
         distances = [float(np.linalg.norm(body.pose.p)) for body in self.bodies]
         centres = [float(np.linalg.norm(own.link.com)) for body in self.bodies for own in body.members]
         return max([*distances, *centres], default=0.0)
-
-    def mimic(self, k: int) -> Mimic | None:
-        """Whom joint k follows."""
-        return self.bodies[k].joint.mimic
 
 
 def inertia_of(link: Link) -> MergedLink:
