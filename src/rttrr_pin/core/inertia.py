@@ -7,6 +7,7 @@ sign.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -35,6 +36,18 @@ class SpatialInertia:
     def of(cls, mass: Scalar, com: Vector, tensor: Matrix) -> SpatialInertia:
         """From the centre of mass [m] and the tensor about it [kg m^2]: J = I + m (c.c 1 - c c^T) (parallel axes)."""
         return cls(mass, com * mass, tensor + point_tensor(com) * mass)
+
+    @classmethod
+    def of_parameters(cls, parameters: Sequence[Scalar]) -> SpatialInertia:
+        """From the ten numbers of `parameters`."""
+        m, x, y, z, xx, xy, yy, xz, yz, zz = parameters
+        return cls(m, Vector(x, y, z), Matrix((Vector(xx, xy, xz), Vector(xy, yy, yz), Vector(xz, yz, zz))))
+
+    @property
+    def parameters(self) -> tuple[Scalar, ...]:
+        """m, h and the entries xx, xy, yy, xz, yz, zz of J: the order of the regressor."""
+        x, y, z = self.J.rows
+        return (self.m, *self.h, x.x, x.y, y.y, x.z, y.z, z.z)
 
     def __add__(self, other: SpatialInertia) -> SpatialInertia:
         return SpatialInertia(self.m + other.m, self.h + other.h, self.J + other.J)

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from rttrr_pin.core.algebra import Matrix, Vector
-from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.arrays import Array, angles_of, rotation
 from rttrr_pin.core.inertia import SpatialInertia
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.model import Link, Model
@@ -43,16 +43,34 @@ def with_joints(variant: Variant, indices: tuple[int, ...], change: Callable[[Jo
 def inertial_parameters(link: Link) -> Array:
     """m, m c, and the tensor about the origin of {i} of a link, (10,), as in `Robot.inertial_parameters`."""
     own = SpatialInertia.of(link.mass, Vector.of(link.com), Matrix.of(link.inertia))
-    x, y, z = own.J.rows
-    return np.array([own.m, *own.h, x.x, x.y, y.y, x.z, y.z, z.z], dtype=np.float64)
+    return np.array(own.parameters, dtype=np.float64)
 
 
 def link_of(link: Link, parameters: Array) -> Link:
     """A link of such parameters, (10,)."""
-    m, hx, hy, hz, xx, xy, yy, xz, yz, zz = parameters.tolist()
-    J = Matrix((Vector(xx, xy, xz), Vector(xy, yy, yz), Vector(xz, yz, zz)))
-    com, tensor = SpatialInertia(m, Vector(hx, hy, hz), J).about_com()
-    return replace(link, mass=m, com=np.array([*com], dtype=np.float64), inertia=symmetric(tensor.array))
+    mass, *others = parameters.tolist()
+    com, tensor = SpatialInertia.of_parameters((mass, *others)).about_com()
+    return replace(link, mass=mass, com=np.array([*com], dtype=np.float64), inertia=symmetric(tensor.array))
+
+
+def spread(model: Model, changes: Mapping[int, Array]) -> Array:
+    """Changes of links, (10,), or (fitted, 10), as one of all parameters."""
+    some = next(iter(changes.values()))
+    total = np.zeros((*some.shape[:-1], TEN * len(model.links)))
+    for i, change in changes.items():
+        total[..., TEN * i : TEN * (i + 1)] = change
+    return total
+
+
+def moving_axes(R: Array) -> Array:
+    """The rotation of the same roll, pitch and yaw about moving axes x, y, z."""
+    roll, pitch, yaw = angles_of(R)
+    return np.asarray(rotation((roll, 0, 0)) @ rotation((0, pitch, 0)) @ rotation((0, 0, yaw)))
+
+
+def opposite_angles(R: Array) -> Array:
+    """The rotation of roll, pitch and yaw of the opposite sign."""
+    return rotation([-angle for angle in angles_of(R)])
 
 
 def symmetric(tensor: Array) -> Array:
@@ -106,9 +124,14 @@ def told_first(x: Sequence[float], units: Mapping[str, float]) -> dict[str, floa
     return told_factor(float(x[0]), units)
 
 
-def named(model: Model, indices: tuple[int, ...]) -> tuple[str | None, str]:
+def each_and_all(indices: Sequence[int]) -> list[tuple[int, ...]]:
+    """Each by itself, then all of them where they are several."""
+    return [*((i,) for i in indices), *([tuple(indices)] if len(indices) > 1 else [])]
+
+
+def named(model: Model, indices: tuple[int, ...], every: str = "every joint") -> tuple[str | None, str]:
     """The joint's name, if it is one, and what a sentence calls them."""
     if len(indices) == 1:
         name = model.joints[indices[0]].name
         return name, name
-    return None, "every joint"
+    return None, every

@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.diagnosis.slots import Slots
 from rttrr_pin.diagnosis.variant import Values, Variant
 from rttrr_pin.implementations.protocol import Batch
 
@@ -24,6 +25,12 @@ def scaled(variant: Variant, q: Mapping[int, float], v: Mapping[int, float], a: 
 def tau_scaled(variant: Variant, factors: Mapping[int, float]) -> Variant:
     """The program whose tau is multiplied by factors, by column."""
     return variant.with_output(lambda batch, values: {**values, "tau": _times(values["tau"], factors)})
+
+
+def geared(variant: Variant, joint: Slots, factor: float) -> Variant:
+    """The program that has q, v, a and tau of a joint multiplied by a factor."""
+    q, v = dict.fromkeys(joint.q, factor), dict.fromkeys(joint.v, factor)
+    return tau_scaled(scaled(variant, q, v, v), v)
 
 
 def _times(x: Array, factors: Mapping[int, float]) -> Array:

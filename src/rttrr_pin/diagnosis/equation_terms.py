@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import Any
 
 import numpy as np
 
 from rttrr_pin.core.model import Model
 from rttrr_pin.diagnosis.altering import WORDS, told_first, with_gravity
-from rttrr_pin.diagnosis.columns import scaled
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.variant import Values, Variant, run
 from rttrr_pin.implementations.protocol import Batch
@@ -43,36 +43,17 @@ def equation_terms(model: Model) -> Iterator[Hypothesis]:
     for term in TERMS:
         if not term.gravity or model.gravity.any():
             yield Hypothesis(term.id, "convention", term.sentence, term.repair, partial(_without, term=term))
-    yield Hypothesis(
-        id="factor of a",
-        kind="convention",
-        sentence="a is multiplied by a factor",
-        repair="pass a as it is",
-        apply=lambda variant, x: scaled(variant, {}, {}, dict.fromkeys(range(model.nv), float(x[0]))),
-        start=(1.5,),
-        neutral=(1.0,),
-        values=partial(told_first, units=WORDS),
-    )
-    yield Hypothesis(
-        id="factor of v",
-        kind="convention",
-        sentence="v is multiplied by a factor",
-        repair="pass v as it is",
-        apply=lambda variant, x: scaled(variant, {}, dict.fromkeys(range(model.nv), float(x[0])), {}),
-        start=(1.5,),
-        neutral=(1.0,),
-        values=partial(told_first, units=WORDS),
-    )
-    yield Hypothesis(
-        id="factor of velocity terms",
-        kind="convention",
-        sentence="velocity terms are multiplied by a factor",
-        repair="add velocity terms once, with sign +",
-        apply=_velocity_terms,
-        start=(1.5,),
-        neutral=(1.0,),
-        values=partial(told_first, units=WORDS),
-    )
+    for id, sentence, repair, apply in FACTORS:
+        yield Hypothesis(
+            id=id,
+            kind="convention",
+            sentence=sentence,
+            repair=repair,
+            apply=apply,
+            start=(1.5,),
+            neutral=(1.0,),
+            values=partial(told_first, units=WORDS),
+        )
 
 
 def _without(variant: Variant, x: Sequence[float], term: Term) -> Variant:
@@ -84,17 +65,35 @@ def _without(variant: Variant, x: Sequence[float], term: Term) -> Variant:
     return (with_gravity(variant, np.zeros(3)) if term.gravity else variant).with_input(inputs)
 
 
+def _scaled(variant: Variant, x: Sequence[float], name: str) -> Variant:
+    def inputs(batch: Batch) -> Batch:
+        own: dict[str, Any] = {name: float(x[0]) * getattr(batch, name)}
+        return replace(batch, **own)
+
+    return variant.with_input(inputs)
+
+
 def _velocity_terms(variant: Variant, x: Sequence[float]) -> Variant:
     """What results without rates, and a factor times the rest."""
     factor = float(x[0])
 
     def outputs(batch: Batch, values: Values) -> Values:
         given = variant.given(batch)
-        still = run(variant.model, replace(given, v=np.zeros_like(given.v)), variant.mutations)
-        for own in variant.outputs:
-            still = own(batch, still)
+        at_rest = replace(given, v=np.zeros_like(given.v))
+        still = variant.shown(batch, run(variant.model, at_rest, variant.mutations))
         return {
             key: still[key] + factor * (values[key] - still[key]) if factor != 1.0 else values[key] for key in values
         }
 
     return variant.with_output(outputs)
+
+
+FACTORS = (
+    ("factor of a", "a is multiplied by a factor", "pass a as it is", partial(_scaled, name="a")),
+    ("factor of v", "v is multiplied by a factor", "pass v as it is", partial(_scaled, name="v")),
+    (
+        "factor of velocity terms", "velocity terms are multiplied by a factor",
+        "add velocity terms once, with sign +", _velocity_terms,
+    ),
+)  # fmt: skip
+"""Name, sentence, repair, and the program with the factor."""

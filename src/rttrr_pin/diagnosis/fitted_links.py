@@ -9,12 +9,19 @@ from typing import Any, Literal
 
 import numpy as np
 
-from rttrr_pin.core.algebra import Vector
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.identification import INERTIAL
-from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.core.model import Link, Model
-from rttrr_pin.diagnosis.altering import TEN, WORDS, inertial_parameters, line_of, link_of, told_factor, with_links
+from rttrr_pin.diagnosis.altering import (
+    TEN,
+    WORDS,
+    inertial_parameters,
+    line_of,
+    link_of,
+    spread,
+    told_factor,
+    with_links,
+)
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.variant import Variant
 from rttrr_pin.inspection.plausibility import LENGTH_UNITS
@@ -71,11 +78,7 @@ def _at(model: Model, fit: LinkFit, links: Mapping[int, Link]) -> Hypothesis:
     if len(links) == 1:
         name = first.name
     start = fit.start(first)
-    parameters = None
-    if fit.directions is not None:
-        parameters = np.zeros((len(start), TEN * len(model.links)))
-        for i, link in links.items():
-            parameters[:, TEN * i : TEN * (i + 1)] = fit.directions(link)
+    directions = {} if fit.directions is None else {i: fit.directions(link) for i, link in links.items()}
 
     def told(x: Sequence[float]) -> Mapping[str, Any]:
         return fit.told(first, np.array(x))
@@ -89,7 +92,7 @@ def _at(model: Model, fit: LinkFit, links: Mapping[int, Link]) -> Hypothesis:
         link=first.name if len(links) == 1 else None,
         start=tuple(start.tolist()),
         neutral=(0.0,) * len(start),
-        parameters=parameters,
+        parameters=spread(model, directions) if directions else None,
         values=told,
         line=line_of(model, link=first.name) if len(links) == 1 else "",
     )
@@ -150,8 +153,7 @@ def _tensor_rows(J: Array) -> Array:
 
 def _size(link: Link) -> float:
     """A moment of inertia of the size of the link's."""
-    own = link.inertia + link.mass * point_tensor(Vector.of(link.com)).array
-    return float(np.abs(own).max()) or 1e-3 * abs(link.mass)
+    return float(np.abs(inertial_parameters(link)[4:]).max()) or 1e-3 * abs(link.mass)
 
 
 def _whole_start(link: Link) -> Array:

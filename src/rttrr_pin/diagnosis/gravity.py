@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from functools import partial
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -12,7 +11,6 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import STANDARD_GRAVITY, Model
 from rttrr_pin.diagnosis.altering import with_gravity
 from rttrr_pin.diagnosis.hypothesis import Apply, Hypothesis
-from rttrr_pin.diagnosis.variant import Variant
 
 KNOWN = {"standard gravity": 9.80665, "9.81": 9.81, "9.8": 9.8, "10": 10.0, "the moon's": 1.62, "none": 0.0}
 """Sizes that have a name [m/s^2]."""
@@ -29,7 +27,8 @@ def gravities(model: Model) -> Iterator[Hypothesis]:
         yield _fixed("gravity missing", "gravity is not counted", "let the base accelerate upwards", np.zeros(3), own)
         yield _fixed(
             "gravity of another sign", "gravity has the opposite sign",
-            "let the base accelerate by minus gravity: upwards", 0.0 - own, own, _opposite,
+            "let the base accelerate by minus gravity: upwards", 0.0 - own, own,
+            lambda variant, x: with_gravity(variant, -variant.model.gravity),  # which may have another size
         )  # fmt: skip
     length = size or float(np.linalg.norm(STANDARD_GRAVITY))
     for k, sign in ((2, -1), (2, 1), (0, 1), (0, -1), (1, 1), (1, -1)):
@@ -75,18 +74,9 @@ def _fixed(id: str, sentence: str, repair: str, gravity: Array, own: Array, appl
         kind="convention",
         sentence=sentence,
         repair=repair,
-        apply=apply or partial(_with_gravity, gravity=gravity),
+        apply=apply or (lambda variant, x: with_gravity(variant, gravity)),
         values=lambda x: {"gravity": gravity.tolist(), "gravity of the robot": own.tolist()},
     )
-
-
-def _with_gravity(variant: Variant, x: Sequence[float], gravity: Array) -> Variant:
-    return with_gravity(variant, gravity)
-
-
-def _opposite(variant: Variant, x: Sequence[float]) -> Variant:
-    """Minus the program's own, which may have another size."""
-    return with_gravity(variant, -variant.model.gravity)
 
 
 def _listed(x: Array) -> str:

@@ -7,7 +7,6 @@ from dataclasses import dataclass, field
 from typing import Any, Literal
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.model import Model
 from rttrr_pin.diagnosis.mutations import Mutation
 from rttrr_pin.diagnosis.variant import Variant
 
@@ -58,7 +57,3 @@ class Hypothesis:
     equation: str = ""
     line: str = ""
     mutation: Mutation | None = None
-
-
-Catalogue = Callable[[Model], list[Hypothesis]]
-"""All hypotheses of one kind about a robot."""

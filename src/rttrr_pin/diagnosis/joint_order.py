@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.slots import Slots, single, slots
@@ -97,45 +98,42 @@ def _both(id: str, sentence: str, own: Sequence[Slots], order: Order) -> Iterato
     repair = f"order by joint name: {', '.join(one.name for one in own)}"
     joint = " and ".join(own[k].name for k in range(len(own)) if order[k] != k) if id.endswith("exchanged") else None
     name = "joints exchanged" if joint else id
-    yield Hypothesis(
-        id=name,
-        kind="convention",
-        sentence=f"{sentence}, in q, v, a and tau",
-        repair=repair,
-        apply=partial(_ordered, own=own, order=order),
-        joint=joint,
-        values=lambda x: said,
-    )
-    yield Hypothesis(
-        id=f"{name} in tau",
-        kind="convention",
-        sentence=f"{sentence}, in tau alone",
-        repair=repair,
-        apply=partial(_tau_ordered, own=own, order=order),
-        joint=joint,
-        values=lambda x: said,
-    )
+    for end, where, apply in (
+        ("", "q, v, a and tau", partial(_ordered, own=own, order=order)),
+        (" in tau", "tau alone", partial(_tau_ordered, own=own, order=order)),
+    ):
+        yield Hypothesis(
+            id=name + end,
+            kind="convention",
+            sentence=f"{sentence}, in {where}",
+            repair=repair,
+            apply=apply,
+            joint=joint,
+            values=lambda x: said,
+        )
 
 
 def _ordered(variant: Variant, x: Sequence[float], own: Sequence[Slots], order: Order) -> Variant:
     """Column k of all is that of joint `order[k]`."""
+    q, v = ([getattr(one, name)[0] for one in own] for name in "qv")
 
     def inputs(batch: Batch) -> Batch:
-        q, v, a = (y.copy() for y in (batch.q, batch.v, batch.a))
-        for k, joint in enumerate(order):
-            q[:, own[joint].q] = batch.q[:, own[k].q]
-            v[:, own[joint].v] = batch.v[:, own[k].v]
-            a[:, own[joint].v] = batch.a[:, own[k].v]
-        return replace(batch, q=q, v=v, a=a)
+        return replace(batch, q=_moved(batch.q, q, order), v=_moved(batch.v, v, order), a=_moved(batch.a, v, order))
 
     return _tau_ordered(variant.with_input(inputs), x, own, order)
+
+
+def _moved(x: Array, columns: Sequence[int], order: Order) -> Array:
+    """What stands in the k-th of some columns, in that of joint `order[k]`."""
+    moved = x.copy()
+    moved[:, [columns[joint] for joint in order]] = x[:, columns]
+    return moved
 
 
 def _tau_ordered(variant: Variant, x: Sequence[float], own: Sequence[Slots], order: Order) -> Variant:
     def outputs(batch: Batch, values: Values) -> Values:
         tau = values["tau"].copy()
-        for k, joint in enumerate(order):
-            tau[:, own[k].v] = values["tau"][:, own[joint].v]
+        tau[:, [one.v[0] for one in own]] = values["tau"][:, [own[joint].v[0] for joint in order]]
         return {**values, "tau": tau}
 
     return variant.with_output(outputs)

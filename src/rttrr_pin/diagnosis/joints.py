@@ -9,8 +9,8 @@ from typing import Any
 
 from rttrr_pin.core.joint import EFFECTS, Joint, JointEffects
 from rttrr_pin.core.model import Model
-from rttrr_pin.diagnosis.altering import line_of, named, with_joints
-from rttrr_pin.diagnosis.columns import added, scaled, tau_scaled
+from rttrr_pin.diagnosis.altering import each_and_all, line_of, named, with_joints
+from rttrr_pin.diagnosis.columns import added, geared
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.mimics import mimics
 from rttrr_pin.diagnosis.slots import Slots, single, slots
@@ -18,6 +18,9 @@ from rttrr_pin.diagnosis.variant import Variant
 
 WHAT = {"armature": "armature", "damping": "viscous friction", "friction": "Coulomb friction"}
 """What each effect is called."""
+
+TERMS = {"armature": "armature a", "damping": "damping v", "friction": "friction sign(v)"}
+"""What each adds to tau."""
 
 START = 0.1
 """Where fits of an effect begin [kg m^2, N m s/rad, N m]."""
@@ -33,12 +36,8 @@ def _effects(model: Model) -> Iterator[Hypothesis]:
     moving = tuple(i for i, joint in enumerate(model.joints) if joint.nv)
     for effect in EFFECTS:
         having = tuple(i for i in moving if getattr(model.joints[i].effects, effect))
-        yield from (_ignored(model, (effect,), (i,)) for i in having)
-        if len(having) > 1:
-            yield _ignored(model, (effect,), having)
-        yield from (_of_size(model, effect, (i,)) for i in moving)
-        if len(moving) > 1:
-            yield _of_size(model, effect, moving)
+        yield from (_ignored(model, (effect,), group) for group in each_and_all(having))
+        yield from (_of_size(model, effect, group) for group in each_and_all(moving))
     yield from _friction_of_the_file(model)
     for several in (("damping", "friction"), EFFECTS):
         having = tuple(i for i in moving if any(getattr(model.joints[i].effects, own) for own in several))
@@ -46,33 +45,23 @@ def _effects(model: Model) -> Iterator[Hypothesis]:
             yield _ignored(model, several, having)
 
 
-def _ignored(model: Model, effects: Sequence[str], indices: tuple[int, ...]) -> Hypothesis:
+def _ignored(model: Model, effects: tuple[str, ...], indices: tuple[int, ...]) -> Hypothesis:
     """The program counts none of these."""
     joint, name = named(model, indices)
     what = " and ".join(filter(None, (", ".join(WHAT[own] for own in effects[:-1]), WHAT[effects[-1]])))
     verb = "is" if len(effects) == 1 else "are"
     own = {effect: [float(getattr(model.joints[i].effects, effect)) for i in indices] for effect in effects}
-    many = joint is None or len(effects) > 1
-    label = "friction" if tuple(effects) == ("damping", "friction") else "joint effects" if many else effects[0]
-    if len(effects) == 1:
-        label = WHAT[effects[0]]
+    label = {("damping", "friction"): "friction", EFFECTS: "joint effects"}.get(effects, what)
     return Hypothesis(
         id=f"{label} ignored" + (" at every joint" if joint is None else ""),
         kind="joint",
         sentence=f"the {what} of {name} {verb} not counted",
-        repair=f"add the {what} of {name} to tau: {_term(effects)}",
-        apply=partial(_without, effects=tuple(effects), indices=indices),
+        repair=f"add the {what} of {name} to tau: {' + '.join(TERMS[own] for own in effects)}",
+        apply=partial(_without, effects=effects, indices=indices),
         joint=joint,
         values=lambda x: {effect: numbers[0] if joint else numbers for effect, numbers in own.items()},
-        line=line_of(model, joint=joint) if joint else "",
+        line=line_of(model, joint=joint),
     )
-
-
-TERMS = {"armature": "armature a", "damping": "damping v", "friction": "friction sign(v)"}
-
-
-def _term(effects: Sequence[str]) -> str:
-    return " + ".join(TERMS[own] for own in effects)
 
 
 def _without(variant: Variant, x: Sequence[float], effects: tuple[str, ...], indices: tuple[int, ...]) -> Variant:
@@ -102,7 +91,7 @@ def _of_size(model: Model, effect: str, indices: tuple[int, ...]) -> Hypothesis:
         start=(START,),
         neutral=(0.0,),
         values=told,
-        line=line_of(model, joint=joint) if joint and counted else "",
+        line=line_of(model, joint=joint) if counted else "",
     )  # fmt: skip
 
 
@@ -120,7 +109,7 @@ def _friction_of_the_file(model: Model) -> Iterator[Hypothesis]:
         i for i, joint in enumerate(model.joints) if joint.nv and (joint.dynamics.damping or joint.dynamics.friction)
     )
     left_out = tuple(i for i in given if _with_friction(model.joints[i]) is not model.joints[i])
-    for group in (*((i,) for i in left_out), *([left_out] if len(left_out) > 1 else [])):
+    for group in each_and_all(left_out):
         joint, name = named(model, group)
         yield Hypothesis(
             id="friction of the file" + ("" if joint else " at every joint"),
@@ -129,7 +118,7 @@ def _friction_of_the_file(model: Model) -> Iterator[Hypothesis]:
             repair="leave damping v + friction sign(v) out, or give the robot the joint effects of the file",
             apply=partial(_with_friction_of, indices=group),
             joint=joint,
-            line=line_of(model, joint=joint) if joint else "",
+            line=line_of(model, joint=joint),
         )
 
 
@@ -197,5 +186,4 @@ def _gears(model: Model) -> Iterator[Hypothesis]:
 
 
 def _geared(variant: Variant, x: Sequence[float], own: Slots) -> Variant:
-    q, v = dict.fromkeys(own.q, float(x[0])), dict.fromkeys(own.v, float(x[0]))
-    return tau_scaled(scaled(variant, q, v, v), v)
+    return geared(variant, own, float(x[0]))

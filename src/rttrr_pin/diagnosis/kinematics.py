@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import lru_cache
 from typing import Any
 
@@ -9,6 +10,8 @@ import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dynamics import bodies, joint_states
+from rttrr_pin.core.energy import LinkState, moving_links
+from rttrr_pin.core.joints.base import JointMotion
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import FLOAT, columns
 from rttrr_pin.implementations.protocol import Batch
@@ -18,27 +21,26 @@ from rttrr_pin.implementations.protocol import Batch
 def on_parents(model: Model, batch: Batch) -> tuple[Array, Array]:
     """R_parent_i (N, links, 3, 3) and p_parent_i (N, links, 3) of each link on its parent."""
     states = joint_states(model, FLOAT, *(columns(x) for x in (batch.q, batch.v, batch.a)))
-    R, p = np.empty((len(batch), len(model.links), 3, 3)), np.empty((len(batch), len(model.links), 3))
-    for i, (body, state) in enumerate(zip(bodies(model, FLOAT), states, strict=True)):
-        motion = body.type.motion(body, state, FLOAT.sincos)
-        entries: list[Any] = [x for row in motion.R.rows for x in row]
-        components: list[Any] = [*motion.p]
-        for k, x in enumerate(entries):
-            R[:, i, k // 3, k % 3] = x
-        for k, x in enumerate(components):
-            p[:, i, k] = x
-    return R, p
+    links = zip(bodies(model, FLOAT), states, strict=True)
+    return _arrays([body.type.motion(body, state, FLOAT.sincos) for body, state in links], len(batch))
 
 
 @lru_cache(maxsize=4)
 def in_base(model: Model, batch: Batch) -> tuple[Array, Array]:
     """R_0_i (N, links, 3, 3) and p_0_i (N, links, 3) of each link in the base frame."""
-    R, p = (x.copy() for x in on_parents(model, batch))
-    for i, joint in enumerate(model.joints):
-        if joint.parent >= 0:
-            p[:, i] = p[:, joint.parent] + turned(R[:, joint.parent], p[:, i])
-            R[:, i] = R[:, joint.parent] @ R[:, i]
-    return R, p
+    q, v = columns(batch.q), columns(batch.v)
+    return _arrays(moving_links(model, bodies(model, FLOAT), q, v, FLOAT), len(batch))
+
+
+def _arrays(frames: Sequence[JointMotion | LinkState], states: int) -> tuple[Array, Array]:
+    """R and p of frames as arrays."""
+    rows = np.empty((states, len(frames), 4, 3))
+    for i, frame in enumerate(frames):
+        for k, vector in enumerate((*frame.R.rows, frame.p)):
+            components: list[Any] = [*vector]
+            for j, x in enumerate(components):
+                rows[:, i, k, j] = x
+    return rows[:, :, :3], rows[:, :, 3]
 
 
 def turned(R: Array, vectors: Array) -> Array:

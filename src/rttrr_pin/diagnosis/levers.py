@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -41,7 +40,7 @@ def _at_next(model: Model, links: tuple[int, ...]) -> Hypothesis:
 
 def _apply(variant: Variant, x: Sequence[float], links: tuple[int, ...]) -> Variant:
     model = variant.model
-    still = replace(model, gravity=np.zeros(3))
+    still = model.with_gravity(np.zeros(3))
     following = {joint.parent: i for i, joint in reversed(list(enumerate(model.joints)))}
 
     def outputs(batch: Batch, values: Values) -> Values:

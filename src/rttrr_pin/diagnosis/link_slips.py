@@ -8,10 +8,10 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rttrr_pin.core.algebra import Vector
-from rttrr_pin.core.arrays import Array, angles_of, rotation
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.core.model import Link
-from rttrr_pin.diagnosis.altering import symmetric
+from rttrr_pin.diagnosis.altering import moving_axes, opposite_angles, symmetric
 from rttrr_pin.inspection.readings import ORDERS
 from rttrr_pin.urdf.inertial import ENTRIES
 from rttrr_pin.urdf.inertial import symmetric as from_entries
@@ -86,16 +86,6 @@ def _dropped(link: Link, R: Array) -> Link:
 
 def _scaled(link: Link, R: Array, factor: float) -> Link:
     return replace(link, mass=factor * link.mass, inertia=factor * link.inertia)
-
-
-def _moving_axes(R: Array) -> Array:
-    """The rotation of the same roll, pitch and yaw about moving axes x, y, z."""
-    roll, pitch, yaw = angles_of(R)
-    return np.asarray(rotation((roll, 0, 0)) @ rotation((0, pitch, 0)) @ rotation((0, 0, yaw)))
-
-
-def _opposite_angles(R: Array) -> Array:
-    return rotation([-angle for angle in angles_of(R)])
 
 
 def _products(factor: float) -> Callable[[Array], Array]:
@@ -213,11 +203,11 @@ TENSOR = (
     LinkSlip(
         "inertial rpy about moving axes",
         "the rpy of the inertial frame of {link} turns about moving axes x, y, z: R_x R_y R_z",
-        "turn about fixed axes: R = R_z(yaw) R_y(pitch) R_x(roll)", _turned(_moving_axes), turned=True,
+        "turn about fixed axes: R = R_z(yaw) R_y(pitch) R_x(roll)", _turned(moving_axes), turned=True,
     ),
     LinkSlip(
         "inertial rpy of opposite sign", "the angles of the inertial frame of {link} have the opposite sign",
-        "negate the rpy of the inertial frame of {link}", _turned(_opposite_angles), turned=True,
+        "negate the rpy of the inertial frame of {link}", _turned(opposite_angles), turned=True,
     ),
     LinkSlip(
         "tensor by rows", "of the tensor of {link} the first six of nine entries by rows stand in six slots",

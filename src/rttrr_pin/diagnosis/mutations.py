@@ -75,9 +75,9 @@ class Mutation:
     link: int | None = None
 
 
-def mutations(link: int | None = None) -> list[Mutation]:
-    """Every error that changes a number, at all links; or at this link alone, where one link may have it alone."""
-    return list(_mutations(link))
+def mutations() -> list[Mutation]:
+    """Every error that changes a number, at all links."""
+    return [one for name in functions() for one in mutations_of(name)]
 
 
 @cache
@@ -92,7 +92,7 @@ def mutation(identity: str) -> Mutation:
     Raises:
         StopIteration: there is none.
     """
-    return next(one for one in _mutations() if one.id == identity)
+    return next(one for one in mutations() if one.id == identity)
 
 
 def at(mutation: Mutation, link: int | None) -> Mutation:
@@ -270,13 +270,6 @@ def copied(function: FunctionType, mutations: Sequence[Mutation], namespace: dic
     result = FunctionType(code, namespace, function.__name__, function.__defaults__, function.__closure__)
     result.__kwdefaults__ = function.__kwdefaults__
     return result
-
-
-@cache
-def _mutations(link: int | None = None) -> tuple[Mutation, ...]:
-    if link is not None:
-        return tuple(replace(one, link=link) for one in _mutations() if is_local(one))
-    return tuple(one for name in functions() for one in mutations_of(name))
 
 
 @cache

@@ -7,13 +7,11 @@ from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from rttrr_pin.core.algebra import Vector
 from rttrr_pin.core.inertia import point_tensor
 from rttrr_pin.core.joints import FIXED
 from rttrr_pin.core.model import Link, Model
-from rttrr_pin.diagnosis.altering import TEN, differs, inertial_parameters, line_of, symmetric, with_links
+from rttrr_pin.diagnosis.altering import differs, inertial_parameters, line_of, spread, symmetric, with_links
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.variant import Variant
 from rttrr_pin.inspection.structure import other_side
@@ -50,15 +48,10 @@ def _of_pair(model: Model, slips: Sequence[PairSlip], i: int, other: int) -> Ite
     """Those that change a number."""
     link, beside = model.links[i].name, model.links[other].name if other >= 0 else model.root.name
     for slip in slips:
-        altered = slip.altered(model, i, other)
-        changes = {k: inertial_parameters(new) - inertial_parameters(model.links[k]) for k, new in altered.items()}
-        if not any(
-            differs(inertial_parameters(model.links[k]), inertial_parameters(new)) for k, new in altered.items()
-        ):
+        altered = slip.altered(model, i, other).items()
+        both = {k: (inertial_parameters(new), inertial_parameters(model.links[k])) for k, new in altered}
+        if not any(differs(*pair) for pair in both.values()):
             continue
-        total = np.zeros(TEN * len(model.links))
-        for k, change in changes.items():
-            total[TEN * k : TEN * (k + 1)] = change
         yield Hypothesis(
             id=slip.id,
             kind="parameters",
@@ -66,14 +59,10 @@ def _of_pair(model: Model, slips: Sequence[PairSlip], i: int, other: int) -> Ite
             repair=slip.repair.format(link=link, other=beside),
             apply=partial(_apply, altered=slip.altered, i=i, other=other),
             link=link,
-            parameters=total,
-            values=_mass(model.links[i].mass),
+            parameters=spread(model, {k: new - own for k, (new, own) in both.items()}),
+            values=lambda x: {"mass in the file": model.links[i].mass},
             line=line_of(model, link=link),
         )
-
-
-def _mass(mass: float) -> Callable[[Sequence[float]], Mapping[str, Any]]:
-    return lambda x: {"mass in the file": mass}
 
 
 def _apply(variant: Variant, x: Sequence[float], altered: Altered, i: int, other: int) -> Variant:

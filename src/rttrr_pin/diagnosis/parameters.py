@@ -11,7 +11,7 @@ import numpy as np
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joints import FIXED
 from rttrr_pin.core.model import Link, Model
-from rttrr_pin.diagnosis.altering import TEN, differs, inertial_parameters, line_of, with_links
+from rttrr_pin.diagnosis.altering import differs, inertial_parameters, line_of, spread, with_links
 from rttrr_pin.diagnosis.fitted_links import fitted
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.link_slips import LINK_SLIPS, LinkSlip, Slipped
@@ -32,15 +32,14 @@ def _slips(model: Model) -> Iterator[Hypothesis]:
     """Known slips at each link, and at every one at once."""
     own = {i: inertial_parameters(link) for i, link in enumerate(model.links)}
     massive = [i for i, link in enumerate(model.links) if own[i].any()]
-    frames = {i: inertial_frame(model, model.links[i]) for i in massive}
+    frames = {i: _inertial_frame(model, model.links[i]) for i in massive}
     told: dict[tuple[str, int], list[Array]] = {}
     for slip in LINK_SLIPS:
         changes: dict[int, Array] = {}
         for i in massive:
-            R = frames[i]
-            if slip.turned and R is None:
+            if slip.turned and np.array_equal(frames[i], np.eye(3)):
                 continue
-            new = inertial_parameters(slip.slipped(model.links[i], np.eye(3) if R is None else R))
+            new = inertial_parameters(slip.slipped(model.links[i], frames[i]))
             before = told.setdefault((slip.family, i), [own[i]]) if slip.family else [own[i]]
             if all(differs(new, other, KINDS) for other in before):
                 changes[i] = new - own[i]
@@ -53,31 +52,22 @@ def _slips(model: Model) -> Iterator[Hypothesis]:
         yield _fixed_ignored(model, {i: -own[i] for i in fixed})
 
 
-def inertial_frame(model: Model, link: Link) -> Array | None:
-    """R of a link's inertial frame in the link frame; None where it is not turned, or where there is no file."""
-    if not link.rotated or not isinstance(model.document, UrdfDocument):
-        return None
-    element = model.document.links.get(link.name)
+def _inertial_frame(model: Model, link: Link) -> Array:
+    """R of a link's inertial frame in the link frame; the identity where it is not turned, or there is no file."""
+    document = model.document
+    element = document.links.get(link.name) if link.rotated and isinstance(document, UrdfDocument) else None
     inertial = None if element is None else element.inertial
-    return None if inertial is None or not np.array_equal(inertial.inertia, link.inertia) else inertial.origin.R
+    if inertial is None or not np.array_equal(inertial.inertia, link.inertia):
+        return np.eye(3)
+    return inertial.origin.R
 
 
-def spread(model: Model, changes: Mapping[int, Array]) -> Array:
-    """Changes of links, (10,), or (fitted, 10), as one of all parameters."""
-    some = next(iter(changes.values()))
-    total = np.zeros((*some.shape[:-1], TEN * len(model.links)))
-    for i, change in changes.items():
-        total[..., TEN * i : TEN * (i + 1)] = change
-    return total
-
-
-def _apply(variant: Variant, x: Sequence[float], slipped: Slipped, frames: Mapping[int, Array | None]) -> Variant:
+def _apply(variant: Variant, x: Sequence[float], slipped: Slipped, frames: Mapping[int, Array]) -> Variant:
     """The slip at some links."""
-    axes = {i: np.eye(3) if R is None else R for i, R in frames.items()}
-    return with_links(variant, {i: slipped(variant.model.links[i], R) for i, R in axes.items()})
+    return with_links(variant, {i: slipped(variant.model.links[i], R) for i, R in frames.items()})
 
 
-def _one(model: Model, slip: LinkSlip, i: int, frames: Mapping[int, Array | None], change: Array) -> Hypothesis:
+def _one(model: Model, slip: LinkSlip, i: int, frames: Mapping[int, Array], change: Array) -> Hypothesis:
     """A slip at one link."""
     link = model.links[i]
     return Hypothesis(
@@ -88,13 +78,9 @@ def _one(model: Model, slip: LinkSlip, i: int, frames: Mapping[int, Array | None
         apply=partial(_apply, slipped=slip.slipped, frames={i: frames[i]}),
         link=link.name,
         parameters=spread(model, {i: change}),
-        values=partial(_numbers, link=link, slipped=slip.slipped, R=_axes(frames[i])),
+        values=partial(_numbers, link=link, slipped=slip.slipped, R=frames[i]),
         line=line_of(model, link=link.name),
     )
-
-
-def _axes(R: Array | None) -> Array:
-    return np.eye(3) if R is None else R
 
 
 def _id(model: Model, slip: LinkSlip, i: int) -> str:
@@ -119,9 +105,7 @@ def _numbers(x: Sequence[float], link: Link, slipped: Slipped, R: Array) -> Mapp
     return values
 
 
-def _every(
-    model: Model, slip: LinkSlip, frames: Mapping[int, Array | None], changes: Mapping[int, Array]
-) -> Hypothesis:
+def _every(model: Model, slip: LinkSlip, frames: Mapping[int, Array], changes: Mapping[int, Array]) -> Hypothesis:
     """A slip at every link."""
     return Hypothesis(
         id=f"{slip.id} at every link",
@@ -141,7 +125,7 @@ def _fixed_ignored(model: Model, changes: Mapping[int, Array]) -> Hypothesis:
         kind="parameters",
         sentence="the mass and inertia of links on fixed joints are not counted",
         repair=f"add each of them to the link that carries it, {mass:.6g} kg in all",
-        apply=partial(_apply, slipped=lambda link, R: Link(link.name), frames=dict.fromkeys(changes)),
+        apply=lambda variant, x: with_links(variant, {i: Link(model.links[i].name) for i in changes}),
         parameters=spread(model, changes),
         values=lambda x: {"mass": 0.0, "mass in the file": mass},
     )

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -20,41 +20,14 @@ Taken = Callable[[Model, Batch, Load], Load]
 """The payload as the program takes it."""
 
 
-@dataclass(frozen=True, slots=True)
-class PayloadSlip:
-    """What a program may make of a payload."""
-
-    id: str
-    sentence: str
-    repair: str
-    taken: Taken
-
-
-def payload_conventions(model: Model) -> Iterator[Hypothesis]:
+def payload_conventions(model: Model) -> list[Hypothesis]:
     """All of them."""
-    if not model.links:
-        return
     com = any(link.com.any() for link in model.links)
-    for slip in SLIPS:
-        if com or slip.id != "payload at the COM":
-            yield Hypothesis(slip.id, "convention", slip.sentence, slip.repair, partial(_apply, taken=slip.taken))
-    yield Hypothesis(
-        id="payload ignored",
-        kind="convention",
-        sentence="the payload is not counted",
-        repair="add the payload to f and n of its link",
-        apply=lambda variant, x: variant.with_input(lambda batch: replace(batch, loads=())),
-    )
-    yield Hypothesis(
-        id="factor of the payload",
-        kind="convention",
-        sentence="the payload is multiplied by a factor",
-        repair="count the payload once, in N and N m",
-        apply=lambda variant, x: _apply(variant, x, partial(_times, factor=float(x[0]))),
-        start=(1.5,),
-        neutral=(1.0,),
-        values=lambda x: {"factor": x[0]},
-    )
+    return [own for own in SLIPS if com or own.id != "payload at the COM"] if model.links else []
+
+
+def _slip(id: str, sentence: str, repair: str, taken: Taken) -> Hypothesis:
+    return Hypothesis(id, "convention", sentence, repair, partial(_apply, taken=taken))
 
 
 def _apply(variant: Variant, x: Sequence[float], taken: Taken) -> Variant:
@@ -114,49 +87,63 @@ def _exchanged(model: Model, batch: Batch, load: Load) -> Load:
 
 
 SLIPS = (
-    PayloadSlip(
+    _slip(
         "sign of the payload", "the payload has the opposite sign: it is taken for what acts on the robot",
         "negate it: the payload is what the robot exerts on its surroundings", partial(_times, factor=-1.0),
     ),
-    PayloadSlip("payload twice", "the payload is counted twice", "count it once", partial(_times, factor=2.0)),
-    PayloadSlip(
+    _slip("payload twice", "the payload is counted twice", "count it once", partial(_times, factor=2.0)),
+    _slip(
         "payload in base axes", "the payload, given in the axes of its link, is taken for one in base axes",
         "turn the payload by R^T from base axes", _other_axes(True),
     ),
-    PayloadSlip(
+    _slip(
         "payload in link axes", "the payload, given in base axes, is taken for one in the axes of its link",
         "turn the payload by R^T from base axes", _other_axes(False),
     ),
-    PayloadSlip(
+    _slip(
         "payload in base axes about the base",
         "the payload is taken for one in base axes, its moment about the origin of the base",
         "the payload acts at the origin of its link", _spatial_in_base,
     ),
-    PayloadSlip(
+    _slip(
         "payload at the COM", "the force of the payload acts at the centre of mass of its link",
         "let it act at the origin of the link's frame", _moved(_com),
     ),
-    PayloadSlip(
+    _slip(
         "payload about the base", "the moment of the payload is taken about the origin of the base",
         "take it about the origin of the link's frame", _moved(_from_base),
     ),
-    PayloadSlip(
+    _slip(
         "payload about the parent's origin", "the moment of the payload is taken about the origin of the link before",
         "take it about the origin of the link's frame", _moved(_from_parent),
     ),
-    PayloadSlip(
+    _slip(
         "payload at the parent", "the payload acts at the link before, with the same numbers",
         "let it act at its own link", _at_parent,
     ),
-    PayloadSlip(
+    _slip(
         "payload without moment", "the moment of the payload is not counted", "add n of the payload",
         lambda model, batch, load: replace(load, n=0.0 * load.n),
     ),
-    PayloadSlip(
+    _slip(
         "payload without force", "the force of the payload is not counted", "add f of the payload",
         lambda model, batch, load: replace(load, f=0.0 * load.f),
     ),
-    PayloadSlip(
+    _slip(
         "payload, moment first", "force and moment of the payload are exchanged", "pass the force first", _exchanged
+    ),
+    _slip(
+        "payload ignored", "the payload is not counted", "add the payload to f and n of its link",
+        partial(_times, factor=0.0),
+    ),
+    Hypothesis(
+        id="factor of the payload",
+        kind="convention",
+        sentence="the payload is multiplied by a factor",
+        repair="count the payload once, in N and N m",
+        apply=lambda variant, x: _apply(variant, x, partial(_times, factor=float(x[0]))),
+        start=(1.5,),
+        neutral=(1.0,),
+        values=lambda x: {"factor": x[0]},
     ),
 )  # fmt: skip

@@ -8,11 +8,11 @@ from functools import partial
 
 import numpy as np
 
-from rttrr_pin.core.arrays import Array, angles_of, rotation
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints import FIXED
 from rttrr_pin.core.model import Model
-from rttrr_pin.diagnosis.altering import differs, line_of, with_joints
+from rttrr_pin.diagnosis.altering import differs, line_of, moving_axes, named, opposite_angles, with_joints
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.variant import Variant
 
@@ -40,12 +40,12 @@ def _placements(model: Model) -> Iterator[Hypothesis]:
     for slip in SLIPS:
         changed = tuple(i for i, joint in enumerate(model.joints) if _changes(joint, slip.placed(joint), i in still))
         for i in changed:
-            yield _hypothesis(model, slip, (i,), model.joints[i].name)
+            yield _hypothesis(model, slip, (i,))
         if slip.everywhere and len(changed) > 1:
-            yield _hypothesis(model, slip, changed, None)
+            yield _hypothesis(model, slip, changed)
         fixed = tuple(i for i in changed if model.joints[i].type is FIXED)
         if slip.everywhere and 1 < len(fixed) < len(changed):
-            yield _hypothesis(model, slip, fixed, None, "fixed joint")
+            yield _hypothesis(model, slip, fixed, "every fixed joint")
 
 
 def _changes(joint: Joint, other: Joint, still: bool) -> bool:
@@ -67,18 +67,16 @@ def _on_still_links(model: Model) -> set[int]:
     return found
 
 
-def _hypothesis(
-    model: Model, slip: JointSlip, indices: tuple[int, ...], joint: str | None, every: str = "joint"
-) -> Hypothesis:
-    label = joint or f"every {every}"
+def _hypothesis(model: Model, slip: JointSlip, indices: tuple[int, ...], every: str = "every joint") -> Hypothesis:
+    joint, label = named(model, indices, every)
     return Hypothesis(
-        id=slip.id + ("" if joint else f" at every {every}"),
+        id=slip.id + ("" if joint else f" at {every}"),
         kind="parameters",
         sentence=slip.sentence.format(joint=label),
         repair=slip.repair.format(joint=label),
         apply=partial(_apply, placed=slip.placed, indices=indices),
         joint=joint,
-        line=line_of(model, joint=joint) if joint else "",
+        line=line_of(model, joint=joint),
     )
 
 
@@ -96,11 +94,6 @@ def _R(change: Callable[[Array], Array]) -> Placed:
 
 def _p(change: Callable[[Joint], Array]) -> Placed:
     return lambda joint: replace(joint, p=change(joint)) if joint.p.any() else joint
-
-
-def _moving_axes(R: Array) -> Array:
-    roll, pitch, yaw = angles_of(R)
-    return np.asarray(rotation((roll, 0, 0)) @ rotation((0, pitch, 0)) @ rotation((0, 0, yaw)))
 
 
 def _axis_of_parent(joint: Joint) -> Joint:
@@ -133,11 +126,11 @@ SLIPS = (
     ),
     JointSlip(
         "origin rpy about moving axes", "the rpy of {joint} turns about moving axes x, y, z: R_x R_y R_z",
-        "turn {joint} about fixed axes: R = R_z(yaw) R_y(pitch) R_x(roll)", _R(_moving_axes),
+        "turn {joint} about fixed axes: R = R_z(yaw) R_y(pitch) R_x(roll)", _R(moving_axes),
     ),
     JointSlip(
         "origin rpy of opposite sign", "the angles of the <origin> of {joint} have the opposite sign",
-        "negate the rpy of {joint}", _R(lambda R: rotation([-angle for angle in angles_of(R)])),
+        "negate the rpy of {joint}", _R(opposite_angles),
     ),
     JointSlip(
         "origin xyz ignored", "{joint} stands at the origin of its parent's frame", "move {joint} by its xyz",

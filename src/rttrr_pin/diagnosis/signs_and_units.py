@@ -10,7 +10,7 @@ from typing import Any
 
 from rttrr_pin.core.model import Model
 from rttrr_pin.diagnosis.altering import WORDS, line_of, told_first
-from rttrr_pin.diagnosis.columns import scaled, tau_scaled
+from rttrr_pin.diagnosis.columns import geared, scaled, tau_scaled
 from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.slots import Slots, single, slots
 from rttrr_pin.diagnosis.variant import Variant
@@ -96,7 +96,7 @@ def no_tau(model: Model) -> Iterator[Hypothesis]:
         kind="convention",
         sentence="tau is 0",
         repair="compute tau; of a table, fill its columns",
-        apply=partial(_tau_zero, columns=[k for joint in joints for k in joint.v]),
+        apply=partial(_tau_times, columns=[k for joint in joints for k in joint.v], factor=0.0),
     )
 
 
@@ -106,7 +106,7 @@ def _missing(joint: Slots) -> Hypothesis:
         kind="convention",
         sentence=f"tau of {joint.name} is 0",
         repair=f"compute tau of {joint.name}",
-        apply=partial(_tau_zero, columns=joint.v),
+        apply=partial(_tau_times, columns=joint.v, factor=0.0),
         joint=joint.name,
     )
 
@@ -121,7 +121,7 @@ def _of_tau(own: Sequence[Slots]) -> Iterator[Hypothesis]:
         kind="convention",
         sentence="tau has the opposite sign",
         repair="multiply tau by -1",
-        apply=lambda variant, x: tau_scaled(variant, dict.fromkeys(rates, -1.0)),
+        apply=partial(_tau_times, columns=rates, factor=-1.0),
     )
     parts = [("tau", rates)] + ([("moments in tau", turns), ("forces in tau", forces)] if turns and forces else [])
     for name, columns in parts:
@@ -131,15 +131,16 @@ def _of_tau(own: Sequence[Slots]) -> Iterator[Hypothesis]:
             kind="convention",
             sentence=f"{name} {verb} multiplied by a factor",
             repair=f"give {name} in N m and N",
-            apply=partial(_tau_factor, columns=columns),
+            apply=partial(_tau_times, columns=columns),
             start=(2.0,),
             neutral=(1.0,),
             values=partial(told_first, units=FORCES | WORDS),
         )
 
 
-def _tau_factor(variant: Variant, x: Sequence[float], columns: Sequence[int]) -> Variant:
-    return tau_scaled(variant, dict.fromkeys(columns, float(x[0])))
+def _tau_times(variant: Variant, x: Sequence[float], columns: Sequence[int], factor: float | None = None) -> Variant:
+    """Tau times a factor, which is fitted where none is given."""
+    return tau_scaled(variant, dict.fromkeys(columns, float(x[0]) if factor is None else factor))
 
 
 def _of_joint(model: Model, joint: Slots) -> Iterator[Hypothesis]:
@@ -151,7 +152,7 @@ def _of_joint(model: Model, joint: Slots) -> Iterator[Hypothesis]:
             kind="convention",
             sentence=f"{name} counts in the opposite direction: its axis, or q, v, a and tau, have the opposite sign",
             repair=f"negate the axis of {name}",
-            apply=partial(_reversed, joint=joint),
+            apply=lambda variant, x: geared(variant, joint, -1.0),
             joint=name,
             line=line_of(model, joint=name),
         )
@@ -163,7 +164,7 @@ def _of_joint(model: Model, joint: Slots) -> Iterator[Hypothesis]:
         kind="convention",
         sentence=f"tau of {name} has the opposite sign",
         repair=f"multiply tau of {name} by -1",
-        apply=partial(_tau_negative, columns=joint.v),
+        apply=partial(_tau_times, columns=joint.v, factor=-1.0),
         joint=name,
     )
     yield Hypothesis(
@@ -171,25 +172,12 @@ def _of_joint(model: Model, joint: Slots) -> Iterator[Hypothesis]:
         kind="convention",
         sentence=f"tau of {name} is multiplied by a factor, such as a gear ratio",
         repair=f"give tau of {name} at the joint, in N m or N",
-        apply=partial(_tau_factor, columns=joint.v),
+        apply=partial(_tau_times, columns=joint.v),
         joint=name,
         start=(2.0,),
         neutral=(1.0,),
         values=partial(told_first, units=FORCES | WORDS),
     )
-
-
-def _tau_zero(variant: Variant, x: Sequence[float], columns: Sequence[int]) -> Variant:
-    return tau_scaled(variant, dict.fromkeys(columns, 0.0))
-
-
-def _tau_negative(variant: Variant, x: Sequence[float], columns: Sequence[int]) -> Variant:
-    return tau_scaled(variant, dict.fromkeys(columns, -1.0))
-
-
-def _reversed(variant: Variant, x: Sequence[float], joint: Slots) -> Variant:
-    q, v = dict.fromkeys(joint.q, -1.0), dict.fromkeys(joint.v, -1.0)
-    return tau_scaled(scaled(variant, q, v, v), v)
 
 
 def _zeros(model: Model, joint: Slots) -> Iterator[Hypothesis]:
@@ -212,7 +200,7 @@ def _zeros(model: Model, joint: Slots) -> Iterator[Hypothesis]:
             kind="convention",
             sentence=f"the zero of {joint.name} is {degrees} degrees off",
             repair=f"subtract {degrees} degrees from q of {joint.name}",
-            apply=partial(_offset_by, joint=joint, offset=degrees * DEGREE),
+            apply=partial(_offset, joint=joint, offset=degrees * DEGREE),
             joint=joint.name,
             values=partial(_degrees, degrees=degrees),
             line=line_of(model, joint=joint.name),
@@ -223,14 +211,12 @@ def _degrees(x: Sequence[float], degrees: int) -> Mapping[str, Any]:
     return {"offset": degrees * DEGREE, "degrees": degrees}
 
 
-def _offset(variant: Variant, x: Sequence[float], joint: Slots) -> Variant:
-    return _offset_by(variant, x, joint, float(x[0]))
+def _offset(variant: Variant, x: Sequence[float], joint: Slots, offset: float | None = None) -> Variant:
+    """Another zero, which is fitted where none is given."""
 
-
-def _offset_by(variant: Variant, x: Sequence[float], joint: Slots, offset: float) -> Variant:
     def inputs(batch: Batch) -> Batch:
         q = batch.q.copy()
-        q[:, joint.q] += offset
+        q[:, joint.q] += x[0] if offset is None else offset
         return replace(batch, q=q)
 
     return variant.with_input(inputs)

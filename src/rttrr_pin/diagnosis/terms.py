@@ -6,7 +6,7 @@ here at all is told by its code, so that the list of errors never waits for this
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable
 
 CARRIED = "R.T @ (w_dot_p.cross(p) + w_p.cross(w_p.cross(p)) + v_dot_p)"
 
@@ -193,7 +193,7 @@ UNKNOWN = ("`{statement}` is computed{place}", "compute what the recursion does{
 """For an operator that is not among them."""
 
 
-def named(function: str, expressions: Iterator[str] | list[str]) -> tuple[str, str] | None:
+def named(function: str, expressions: Iterable[str]) -> tuple[str, str] | None:
     """The first of the expressions that has a name, and its name."""
-    names: Mapping[str, str] = TERMS.get(function, {})
+    names = TERMS.get(function, {})
     return next(((text, names[text]) for text in expressions if text in names), None)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -16,31 +16,27 @@ from rttrr_pin.diagnosis.kinematics import in_base, on_parents, turned, turned_b
 from rttrr_pin.diagnosis.variant import Values, Variant
 from rttrr_pin.implementations.protocol import Batch
 
+Frames = Callable[[Model, Batch], tuple[Array, Array]]
+"""R and p of each link in another frame."""
+
 Told = Callable[[Variant, Batch, Values], Values]
 """What the program says in place of its values: the batch is that of the recursion."""
 
 
-@dataclass(frozen=True, slots=True)
-class WrenchSlip:
-    """How a program may tell wrenches otherwise."""
-
-    id: str
-    sentence: str
-    repair: str
-    told: Told
-
-
-def wrench_conventions(model: Model) -> Iterator[Hypothesis]:
+def wrench_conventions(model: Model) -> tuple[Hypothesis, ...]:
     """All of them."""
-    for slip in SLIPS if model.links else ():
-        yield Hypothesis(slip.id, "convention", slip.sentence, slip.repair, partial(_apply, told=slip.told))
+    return SLIPS if model.links else ()
+
+
+def _slip(id: str, sentence: str, repair: str, told: Told) -> Hypothesis:
+    return Hypothesis(id, "convention", sentence, repair, partial(_apply, told=told))
 
 
 def _apply(variant: Variant, x: Sequence[float], told: Told) -> Variant:
     return variant.with_output(lambda batch, values: {**values, **told(variant, variant.given(batch), values)})
 
 
-def _turned(keys: str, frames: Callable[[Model, Batch], tuple[Array, Array]]) -> Told:
+def _turned(keys: str, frames: Frames) -> Told:
     """In the axes of another frame."""
 
     def told(variant: Variant, batch: Batch, values: Values) -> Values:
@@ -66,14 +62,14 @@ def _N_about_origin(variant: Variant, batch: Batch, values: Values) -> Values:
     return {"N": values["N"] + np.cross(_coms(variant.model), values["F"])}
 
 
-def _n_about_parent(variant: Variant, batch: Batch, values: Values) -> Values:
-    R, p = on_parents(variant.model, batch)
-    return {"n": values["n"] + np.cross(turned_back(R, p), values["f"])}
+def _n_about(frames: Frames) -> Told:
+    """N about the origin of another frame."""
 
+    def told(variant: Variant, batch: Batch, values: Values) -> Values:
+        R, p = frames(variant.model, batch)
+        return {"n": values["n"] + np.cross(turned_back(R, p), values["f"])}
 
-def _n_about_base(variant: Variant, batch: Batch, values: Values) -> Values:
-    R, p = in_base(variant.model, batch)
-    return {"n": values["n"] + np.cross(turned_back(R, p), values["f"])}
+    return told
 
 
 def _spatial_in_base(variant: Variant, batch: Batch, values: Values) -> Values:
@@ -108,59 +104,54 @@ AXES = "the axes of each link's own frame"
 
 SLIPS = (
     *(
-        WrenchSlip(
-            f"{name} in base axes", f"{name} are in base axes", f"turn them by R^T to {AXES}", _turned(keys, in_base)
+        _slip(f"{name} in {id}", f"{name} are in {axes}", f"turn them by R^T to {AXES}", _turned(keys, frames))
+        for id, axes, frames in (
+            ("base axes", "base axes", in_base),
+            ("the parent's axes", "the axes of the parent's frame", on_parents),
         )
         for name, keys in (("F, N, f and n", "FNfn"), ("f and n", "fn"), ("F and N", "FN"))
     ),
-    *(
-        WrenchSlip(
-            f"{name} in the parent's axes", f"{name} are in the axes of the parent's frame",
-            f"turn them by R^T to {AXES}", _turned(keys, on_parents),
-        )
-        for name, keys in (("F, N, f and n", "FNfn"), ("f and n", "fn"), ("F and N", "FN"))
-    ),
-    WrenchSlip(
+    _slip(
         "sign of f and n", "f and n have the opposite sign: they are what the link exerts on its parent",
         "negate f and n: they are what the parent exerts on the link", _sign("fn"),
     ),
-    WrenchSlip(
+    _slip(
         "sign of f and n, on the parent",
         "f and n are what the link exerts on its parent, in the parent's axes",
         f"negate f and n, and turn them by R^T to {AXES}", _of_parent_side,
     ),
-    WrenchSlip(
+    _slip(
         "sign of F and N", "F and N have the opposite sign, as d'Alembert's inertia forces",
         "negate F and N", _sign("FN"),
     ),
-    WrenchSlip(
+    _slip(
         "n about the COM", "n is about the centre of mass of the link", "n - r_C x f is: add r_C x f", _n_about_com
     ),
-    WrenchSlip(
+    _slip(
         "n about the parent's origin", "n is about the origin of the parent's frame",
-        "take n about the origin of the link's own frame", _n_about_parent,
+        "take n about the origin of the link's own frame", _n_about(on_parents),
     ),
-    WrenchSlip(
+    _slip(
         "n about the base", "n is about the origin of the base", "take n about the origin of the link's own frame",
-        _n_about_base,
+        _n_about(in_base),
     ),
-    WrenchSlip(
+    _slip(
         "f and n in base axes about the base", "f and n are in base axes, and n about the origin of the base",
         f"turn them to {AXES}, and take n about its origin", _spatial_in_base,
     ),
-    WrenchSlip(
+    _slip(
         "N about the origin", "N is about the origin of the link's frame", "N is about the centre of mass",
         _N_about_origin,
     ),
-    WrenchSlip(
+    _slip(
         "F without gravity", "F is without gravity: mass times acceleration alone",
         "let the base accelerate upwards: F is m (v_dot_C - g)", _without_gravity("F"),
     ),
-    WrenchSlip(
+    _slip(
         "F, N, f and n without gravity", "F, N, f and n are without gravity, tau is with it",
         "let the base accelerate upwards", _without_gravity("FNfn"),
     ),
-    WrenchSlip(
+    _slip(
         "moments before forces", "F and N, f and n are exchanged", "give the force first", _exchanged
     ),
 )  # fmt: skip

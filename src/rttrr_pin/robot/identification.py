@@ -38,9 +38,7 @@ class Identification(Dynamics):
         """The parameters that `regressor` multiplies, ten for each link, and three for each joint that moves."""
         parameters: list[Any] = []
         for body in bodies(self.model, FLOAT):
-            link = SpatialInertia.of(body.M, body.r_C, body.I)
-            x, y, z = link.J.rows
-            parameters += [link.m, *link.h, x.x, x.y, y.y, x.z, y.z, z.z]
+            parameters += SpatialInertia.of(body.M, body.r_C, body.I).parameters
         if joint_effects:
             moving = (joint.effects for joint in self.model.joints if joint.nv)
             parameters += [getattr(own, name) for own in moving for name in EFFECTS]
