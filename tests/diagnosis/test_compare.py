@@ -339,6 +339,21 @@ def test_who_follows_whom_is_named(pair: tuple[Mimic | None, Mimic | None]) -> N
     assert result.effects[0].matters
 
 
+def test_who_leads_and_who_follows_may_be_exchanged() -> None:
+    """Where the leader of one follows in the other, and where what follows a joint goes on to."""
+    robot = following(Mimic(0, 0.5, 0.2))
+    joints = list(robot.model.joints)
+    joints[0], joints[2] = replace(joints[0], mimic=Mimic(2, 2.0, -0.4)), replace(joints[2], mimic=None)
+    exchanged = Robot(replace(robot.model, joints=tuple(joints)))
+    joints[0], joints[2] = robot.model.joints[0], replace(joints[2], mimic=Mimic(1, 2.0, 0.3))
+    joints[0] = replace(joints[0], mimic=Mimic(1, 0.7))
+    other = Robot(replace(robot.model, joints=tuple(joints)))
+    for one, two in ((robot, exchanged), (exchanged, robot), (robot, other), (other, robot)):
+        result = compare_robots(one, two, STATES)
+        assert {own.difference.joint for own in result.effects} == {"j0", "j2"}
+        assert not result.passed and not result.remainder
+
+
 def test_joints_that_only_one_has_stand_still() -> None:
     robot = rttrr_pin.load("rttrr")
     result = compare_robots(robot, robot.with_locked({"joint_5": 0.0}), STATES)

@@ -19,9 +19,9 @@ from rttrr_pin.diagnosis.effects_of import (
     effect,
     effect_of,
     first_torques,
-    rms,
     torques_and_bound,
 )
+from rttrr_pin.diagnosis.evidence import rms
 from rttrr_pin.diagnosis.matched import Matched, matched, notes_of
 from rttrr_pin.errors import InputError, listed
 from rttrr_pin.loading import load

@@ -14,6 +14,7 @@ from rttrr_pin.core.joint import Mimic
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import FLOAT
 from rttrr_pin.diagnosis.difference import Difference
+from rttrr_pin.diagnosis.evidence import rms
 from rttrr_pin.diagnosis.rigid_tree import RigidTree
 from rttrr_pin.diagnosis.variant import run
 from rttrr_pin.errors import InputError
@@ -90,12 +91,6 @@ class Effect:
         """Everything as data for JSON."""
         numbers = {"rms": dict(self.rms), "max": dict(self.largest), "share": dict(self.share)}
         return {**self.difference.to_dict(), "matters": self.matters, "most_on": self.joint, "tau": numbers}
-
-
-def rms(x: Array) -> Array:
-    """The root of the mean square of each column."""
-    mean: Array = np.sqrt(np.mean(np.square(x), axis=0))
-    return mean
 
 
 def first_torques(a: RigidTree, b: RigidTree, n_states: int, seed: int) -> Torques:

@@ -80,7 +80,7 @@ def _mimic(k: int, x: Body, y: Body, tolerance: Tolerance, names: list[str]) -> 
         if not any(one.differs for one in own):
             return
     said = [m and {"joint": names[m.joint], "multiplier": m.multiplier, "offset": m.offset} for m in (p, q)]
-    yield difference_of("mimic", None, x.joint.name, (said[0], said[1]), level, _joint(k, mimic=q))
+    yield difference_of("mimic", None, x.joint.name, (said[0], said[1]), level, lambda tree: tree.following(k, q))
 
 
 def _effects(k: int, x: Body, y: Body, tolerance: Tolerance) -> Iterator[Difference]:

@@ -11,9 +11,10 @@ import numpy as np
 
 from rttrr_pin.core.arguments import path_of
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.diagnosis.evidence import rms
 from rttrr_pin.diagnosis.log import Log, read_log
 from rttrr_pin.diagnosis.log_causes import Candidate, candidates
-from rttrr_pin.diagnosis.residual import Residuals, contribution, residuals_of
+from rttrr_pin.diagnosis.residual import Residuals, residuals_of
 from rttrr_pin.diagnosis.selection import SAME, Reduced, chosen, fitted, reduced
 from rttrr_pin.errors import InputError
 from rttrr_pin.reporting.results import Summarised, finite
@@ -39,7 +40,8 @@ class JointResidual:
         rms: root mean square.
         largest: of the absolute values.
         share: rms over that of the measured tau; 0 where that is zero.
-        noise: standard deviation by the noise of tau and the errors of v and a; NaN where it is not known.
+        noise: standard deviation by the noise of tau and the errors of v and a; where that cannot be told from motion,
+            by what all causes together leave.
     """
 
     rms: float
@@ -49,7 +51,7 @@ class JointResidual:
 
     @property
     def at_noise(self) -> bool:
-        """Whether nothing but noise is left; so where that is not known apart from what is left."""
+        """Whether nothing but noise is left."""
         return not self.rms > LEFT * self.noise
 
 
@@ -63,8 +65,8 @@ class LogCause:
         joint: the joint it is about, if any.
         sentence: what was found, with its number and unit.
         values: the same numbers by name.
-        explains: the part of the residual's variance, over the noise of each joint, that is left by the causes before
-            and not by this one, of that before all.
+        explains: the part of the residual's sum of squares, each joint's over its noise, that is left by the causes
+            before and not by this one, of that before all.
         alternatives: sentences of other causes that explain the same.
     """
 
@@ -164,16 +166,12 @@ def explain(robot: Robot, log: Log) -> LogDiagnosis:
     residuals = residuals_of(robot, log)
     every = candidates(residuals)
     A = residuals.columns * residuals.weights[:, None]
-    known = bool(np.isfinite(residuals.noise).all())
-    problem = reduced(A, residuals.means * residuals.weights, residuals.model.nv, known)
+    problem = reduced(A, residuals.means * residuals.weights, residuals.model.nv, residuals.known)
     causes = _seen(problem, residuals, every)
     x = _numbers(problem, causes)
-    explained = _explained(residuals, robot, log, causes, x)
-    noise = residuals.noise
-    if not known:  # of those joints: what all columns together leave
-        noise = np.where(np.isfinite(noise), noise, np.sqrt(_least(residuals) + residuals.within))
-    before = _of_joints(residuals, residuals.whole, noise)
-    after = _of_joints(residuals, residuals.whole - explained, noise)
+    total = sum((own.directions @ numbers for own, (numbers, _, _) in zip(causes, x, strict=True)), np.zeros(1))
+    before = _of_joints(residuals, residuals.whole)
+    after = _of_joints(residuals, residuals.whole - residuals.made_of(total)) if causes else before
     left = all(own.at_noise for own in after.values())
     verdict: Verdict = "unexplained" if not left else "explained" if causes else "agrees"
     told = tuple(_cause(problem, causes, k, every, x) for k in range(len(causes)))
@@ -190,7 +188,7 @@ def _seen(problem: Reduced, residuals: Residuals, every: Sequence[Candidate]) ->
         small = [
             own
             for own, numbers in zip(causes, x, strict=True)
-            if not (_size(residuals, own, numbers[0]) > SEEN * np.nan_to_num(residuals.noise)).any()
+            if not (_size(residuals, own, numbers[0]) > SEEN * residuals.noise).any()
         ]
         if not small:
             return causes
@@ -199,8 +197,7 @@ def _seen(problem: Reduced, residuals: Residuals, every: Sequence[Candidate]) ->
 
 def _size(residuals: Residuals, cause: Candidate, x: Array) -> Array:
     """What a cause makes of tau, root mean square, (nv,)."""
-    made = residuals.columns @ (cause.directions @ np.nan_to_num(x))
-    return np.asarray(np.sqrt((made**2).mean(axis=0)))
+    return rms(residuals.columns @ (cause.directions @ np.nan_to_num(x)))
 
 
 def _numbers(problem: Reduced, causes: Sequence[Candidate]) -> list[tuple[Array, Array, Array]]:
@@ -223,35 +220,13 @@ def _numbers(problem: Reduced, causes: Sequence[Candidate]) -> list[tuple[Array,
     return list(zip(*parts, strict=True))
 
 
-def _explained(
-    residuals: Residuals, robot: Robot, log: Log, causes: Sequence[Candidate], x: Sequence[tuple[Array, Array, Array]]
-) -> Array:
-    """What the causes make of tau at each row of the log, (N, nv)."""
-    total = np.zeros(residuals.columns.shape[-1])
-    for own, (numbers, _, _) in zip(causes, x, strict=True):
-        total += own.directions @ numbers
-    return contribution(robot, log, total)
-
-
-def _least(residuals: Residuals) -> Array:
-    """The variance at each joint that no sum of the columns explains, (nv,)."""
-    left = []
-    for j in range(residuals.model.nv):
-        A, y = residuals.columns[:, j], residuals.means[:, j]
-        sizes = np.linalg.norm(A, axis=0)
-        x, _, rank, _ = np.linalg.lstsq(A / np.where(sizes > 0, sizes, 1.0), y, rcond=1e-7)
-        rest = y - A / np.where(sizes > 0, sizes, 1.0) @ x
-        left.append(float(rest @ rest) / max(len(y) - int(rank), 1))
-    return np.array(left)
-
-
-def _of_joints(residuals: Residuals, rest: Array, noise: Array) -> dict[str, JointResidual]:
-    found = {}
-    for j, name in enumerate(residuals.model.v_names):
-        rms, size = float(np.sqrt((rest[:, j] ** 2).mean())), float(residuals.size[j])
-        largest = float(np.abs(rest[:, j]).max(initial=0.0))
-        found[name] = JointResidual(rms, largest, rms / size if size else 0.0, float(noise[j]))
-    return found
+def _of_joints(residuals: Residuals, rest: Array) -> dict[str, JointResidual]:
+    names, most = residuals.model.v_names, np.abs(rest).max(axis=0, initial=0.0)
+    columns = zip(*(x.tolist() for x in (rms(rest), most, residuals.size, residuals.noise)), strict=True)
+    return {
+        name: JointResidual(own, largest, own / size if size else 0.0, noise)
+        for name, (own, largest, size, noise) in zip(names, columns, strict=True)
+    }
 
 
 def _cause(

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 from rich.console import Console
 from rich.table import Column, Table
 from rich.text import Text
@@ -38,13 +36,12 @@ def _table(report: LogDiagnosis) -> Table:
 
 
 def _cells(before: JointResidual, after: JointResidual) -> list[str]:
-    noise = "?" if math.isnan(after.noise) else f"{after.noise:.2g}"
     left = "" if after.at_noise else "more than noise"
     return [
         f"{before.rms:.3g}",
         f"{before.largest:.3g}",
         f"{100 * before.share:.3g} %",
         f"{after.rms:.3g}",
-        noise,
+        f"{after.noise:.2g}",
         left,
     ]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 from rttrr_pin.diagnosis.compare import Comparison
@@ -97,7 +96,7 @@ def log_page(report: LogDiagnosis) -> Page:
             f"{before.largest:.3g}",
             percent(before.share),
             f"{after.rms:.3g}",
-            "?" if math.isnan(after.noise) else f"{after.noise:.2g}",
+            f"{after.noise:.2g}",
         )
         said = f"{percent(before.share)} of tau, {percent(after.share)} with the causes"
         bars.append(Bars(cells, lengths[k], lengths[len(names) + k], said))

@@ -10,8 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.batch import blocks
 from rttrr_pin.core.model import Model
+from rttrr_pin.diagnosis.evidence import rms
 from rttrr_pin.diagnosis.log import Log
+from rttrr_pin.diagnosis.selection import DEPENDENT
 from rttrr_pin.diagnosis.variant import run
 from rttrr_pin.implementations.protocol import Batch
 from rttrr_pin.robot import Robot
@@ -36,24 +39,45 @@ class Residuals:
     """What was measured less what the model says, and the columns that may explain it.
 
     Attributes:
-        model: the robot.
-        whole: at each row of the log, (N, nv) [N m or N].
-        means: of consecutive rows, (M, nv).
+        robot: as it is modelled.
+        log: as it was read.
+        predicted: tau of the model at each row of the log, (N, nv) [N m or N].
+        means: of consecutive rows of the residual, (M, nv).
         columns: of the same means, (M, nv, columns).
         weights: one over the standard deviation of a mean, (nv,).
-        noise: standard deviation of a row, by noise of tau and errors of v and a, (nv,); NaN where it is not known.
-        size: root mean square of tau, (nv,).
-        within: variance of rows about the mean that they are in, (nv,).
+        noise: standard deviation of a row, by noise of tau and errors of v and a, (nv,); where that is not known, by
+            what all columns together leave.
+        known: whether it is, at all joints.
     """
 
-    model: Model
-    whole: Array
+    robot: Robot
+    log: Log
+    predicted: Array
     means: Array
     columns: Array
     weights: Array
     noise: Array
-    size: Array
-    within: Array
+    known: bool
+
+    @property
+    def model(self) -> Model:
+        """Of the robot."""
+        return self.robot.model
+
+    @property
+    def whole(self) -> Array:
+        """The residual at each row of the log, (N, nv) [N m or N]."""
+        return self.log.tau - self.predicted
+
+    @property
+    def size(self) -> Array:
+        """Root mean square of tau, (nv,)."""
+        return rms(self.log.tau)
+
+    def made_of(self, x: Array) -> Array:
+        """What columns times these numbers make of tau at each row of the log, (N, nv)."""
+        rows = (np.arange(part.start, part.stop) for part in blocks(len(self.log), AT_ONCE))
+        return np.concatenate([_columns(self.robot, self.log.batch, self.predicted, own) @ x for own in rows])
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -70,19 +94,33 @@ def residuals_of(robot: Robot, log: Log) -> Residuals:
     """
     model, batch = robot.model, log.batch
     predicted = run(model, batch)["tau"]
-    size = np.sqrt((log.tau**2).mean(axis=0))
-    error = _of_differentiation(model, log, predicted)
-    noise = np.sqrt(np.maximum(log.noise, NONE * size) ** 2 + error**2)
+    error, least = _of_differentiation(model, log, predicted), NONE * rms(log.tau)
+    of_tau = np.maximum(log.noise, least)
     count = _rows_of_a_mean(log)
     parts = [slice(a, a + count) for own in log.segments for a in range(own.start, own.stop - count + 1, count)]
     residual = log.tau - predicted
     means = np.stack([residual[own].mean(axis=0) for own in parts])
-    within = np.mean([residual[own].var(axis=0) for own in parts], axis=0)
-    columns = _columns(robot, batch, predicted, parts)
-    of_mean = np.sqrt(np.maximum(log.noise, NONE * size) ** 2 / count + error**2)
-    known = np.isfinite(of_mean)
-    of_mean = np.where(known, of_mean, np.maximum(residual.std(axis=0), NONE * size))
-    return Residuals(model, residual, means, columns, 1.0 / np.where(of_mean > 0, of_mean, 1.0), noise, size, within)
+    columns = _means(robot, batch, predicted, parts)
+    known = np.isfinite(of_tau)
+    noise, of_mean = np.sqrt(of_tau**2 + error**2), np.sqrt(of_tau**2 / count + error**2)
+    if not known.all():
+        left = np.maximum(_unexplained(columns, means), least**2)
+        within = np.mean([residual[own].var(axis=0) for own in parts], axis=0)
+        noise, of_mean = np.where(known, noise, np.sqrt(left + within)), np.where(known, of_mean, np.sqrt(left))
+    weights = 1.0 / np.where(of_mean > 0, of_mean, 1.0)
+    return Residuals(robot, log, predicted, means, columns, weights, noise, bool(known.all()))
+
+
+def _unexplained(columns: Array, means: Array) -> Array:
+    """The variance of means at each joint that no sum of the columns explains, (nv,)."""
+    left = []
+    for j in range(means.shape[1]):
+        A, y = columns[:, j], means[:, j]
+        sizes = np.linalg.norm(A, axis=0)
+        A = A / np.where(sizes > 0, sizes, 1.0)
+        x, _, rank, _ = np.linalg.lstsq(A, y, rcond=DEPENDENT)
+        left.append(float(((y - A @ x) ** 2).sum()) / max(len(y) - int(rank), 1))
+    return np.array(left)
 
 
 def _of_differentiation(model: Model, log: Log, predicted: Array) -> Array:
@@ -91,7 +129,7 @@ def _of_differentiation(model: Model, log: Log, predicted: Array) -> Array:
         return np.zeros(model.nv)
     again = run(model, Batch(model, *log.others))["tau"]
     # Both have noise of their own, that of the first and that of both in the second: their difference is one of them.
-    return np.asarray(np.sqrt(((again - predicted) ** 2).mean(axis=0)))
+    return rms(again - predicted)
 
 
 def _rows_of_a_mean(log: Log) -> int:
@@ -102,39 +140,29 @@ def _rows_of_a_mean(log: Log) -> int:
     return int(min(count, max(1, shortest // 4)))
 
 
-def contribution(robot: Robot, log: Log, x: Array) -> Array:
-    """What columns times these numbers make of tau at each row, (N, nv)."""
-    batch, made = log.batch, []
-    predicted = run(robot.model, batch)["tau"]
-    fields = _fields(robot.model, batch)
-    for first in range(0, len(log), AT_ONCE):
-        made.append(_whole(robot, batch, predicted, fields, np.arange(first, min(first + AT_ONCE, len(log)))) @ x)
-    return np.concatenate(made)
-
-
-def _columns(robot: Robot, batch: Batch, predicted: Array, parts: Sequence[slice]) -> Array:
-    """Means of all columns."""
-    means, fields = [], _fields(robot.model, batch)
+def _means(robot: Robot, batch: Batch, predicted: Array, parts: Sequence[slice]) -> Array:
+    """Means of all columns, (M, nv, columns)."""
+    means = []
     count = parts[0].stop - parts[0].start
     together = max(1, AT_ONCE // count)
     for first in range(0, len(parts), together):
         own = parts[first : first + together]
         rows = np.concatenate([np.arange(part.start, part.stop) for part in own])
-        whole = _whole(robot, batch, predicted, fields, rows)
+        whole = _columns(robot, batch, predicted, rows)
         means.append(whole.reshape(len(own), count, *whole.shape[1:]).mean(axis=1))
     return np.concatenate(means)
 
 
-def _whole(robot: Robot, batch: Batch, predicted: Array, fields: Array, rows: NDArray[np.int64]) -> Array:
+def _columns(robot: Robot, batch: Batch, predicted: Array, rows: NDArray[np.int64]) -> Array:
     """All columns at some rows, (rows, nv, columns)."""
     q, v, a = batch.q[rows], batch.v[rows], batch.a[rows]
     of_joints = [a, v, np.sign(v), np.ones_like(v), predicted[rows]]
     diagonal = [x[:, :, None] * np.eye(robot.model.nv) for x in of_joints]
-    return np.concatenate([robot.regressor(q, v, a), *diagonal, fields[rows]], axis=-1)
+    return np.concatenate([robot.regressor(q, v, a), *diagonal, _fields(robot.model, q)], axis=-1)
 
 
-def _fields(model: Model, batch: Batch) -> Array:
-    """What a unit of gravity along each axis takes, (N, nv, 3)."""
-    still = Batch(model, batch.q, np.zeros_like(batch.v), np.zeros_like(batch.a))
+def _fields(model: Model, q: Array) -> Array:
+    """What a unit of gravity along each axis takes, (rows, nv, 3)."""
+    still = Batch(model, q, *np.zeros((2, len(q), model.nv)))
     bare = model.without_joint_effects()
     return np.stack([run(bare.with_gravity(own), still)["tau"] for own in np.eye(3)], axis=-1)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.joint import Joint
+from rttrr_pin.core.joint import Joint, Mimic
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.inspection.merged import MergedLink
 
@@ -127,6 +127,18 @@ class RigidTree:
     def changed_joint(self, k: int, **numbers: Any) -> RigidTree:
         """The tree with other numbers of joint k."""
         return self.changed(k, joint=replace(self.bodies[k].joint, **numbers))
+
+    def following(self, k: int, mimic: Mimic | None) -> RigidTree:
+        """The tree whose joint k follows another, which moves by itself then, or none; what followed k goes on to."""
+        tree = self.changed_joint(k, mimic=mimic)
+        if mimic is not None:
+            tree = tree.changed_joint(mimic.joint, mimic=None)
+            for j, body in enumerate(tree.bodies):
+                own = body.joint.mimic
+                if own is not None and own.joint == k:
+                    m, offset = own.multiplier * mimic.multiplier, own.multiplier * mimic.offset + own.offset
+                    tree = tree.changed_joint(j, mimic=replace(own, joint=mimic.joint, multiplier=m, offset=offset))
+        return tree
 
     def changed_link(self, k: int, name: str, pose: Pose | None = None, **numbers: Any) -> RigidTree:
         """The tree with other numbers of a link of body k."""
