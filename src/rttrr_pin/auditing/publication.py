@@ -146,7 +146,7 @@ class Publication(Rebuilt):
         fixed = {"vC": ACCELERATION, "F": FORCE, "f": FORCE, "N": MOMENT, "n": MOMENT}
         if quantity in fixed:
             return fixed[quantity]
-        rotations = [rotation for joint in self.robot.model.moving for rotation in joint.type.rotations]
+        rotations = self.robot.model.rotations
         force, acceleration, rate = MOMENT, Dimension(time=-2), Dimension(time=-1)
         if not rotations[index]:
             force, acceleration = FORCE, ACCELERATION

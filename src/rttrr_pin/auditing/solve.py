@@ -20,8 +20,7 @@ Rows = Sequence[Sequence[Polynomial]]
 
 def force_symbols(robot: SymbolicRobot) -> Iterator[Symbol]:
     """A symbol for the driving force of each degree of freedom."""
-    rotations = [rotation for joint in robot.model.moving for rotation in joint.type.rotations]
-    for k, rotation in enumerate(rotations, start=1):
+    for k, rotation in enumerate(robot.model.rotations, start=1):
         yield Symbol(f"tau_{k}", rf"\tau_{index(k)}", Role.PAYLOAD, MOMENT if rotation else FORCE, k)
 
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
@@ -25,7 +24,7 @@ def random_motion(model: Model, columns: int) -> tuple[Array, Array, Array]:
     """
     rng = np.random.default_rng(0)
     states = Y_OVER * columns // max(model.nv, 1) + 1
-    turns, L = _turns(model), _length(model)
+    turns, L = np.array(model.rotations, dtype=bool), _length(model)
     unit = np.where(turns, 1.0, L)
     largest = (unit * np.where(turns, math.pi, 1.0), unit * math.sqrt(GRAVITY / L), unit * (GRAVITY / L))
     q, v, a = (rng.uniform(-1.0, 1.0, (states, model.nv)) * size for size in largest)
@@ -34,12 +33,7 @@ def random_motion(model: Model, columns: int) -> tuple[Array, Array, Array]:
 
 def as_forces(model: Model, Y: Array) -> Array:
     """Rows of a regressor in one unit: those of moments divided by a length, so that they compare with forces."""
-    return Y / np.where(_turns(model), _length(model), 1.0)[:, None]
-
-
-def _turns(model: Model) -> NDArray[np.bool_]:
-    """For each rate, whether it is of an angle."""
-    return np.array([turn for joint in model.moving for turn in joint.type.rotations], dtype=bool)
+    return Y / np.where(np.array(model.rotations, dtype=bool), _length(model), 1.0)[:, None]
 
 
 def _length(model: Model) -> float:

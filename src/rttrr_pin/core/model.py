@@ -206,6 +206,11 @@ class Model(Rebuilt):
         """The names along the last axis of v, a and tau."""
         return tuple(label for joint in self.moving for label in joint.v_labels())
 
+    @property
+    def rotations(self) -> tuple[bool, ...]:
+        """Along the last axis of v, whether each rate is of an angle, so that a moment drives it; else a force does."""
+        return tuple(rotation for joint in self.moving for rotation in joint.type.rotations)
+
     def link_index(self, name: str) -> int:
         """The index of a link in `links`.
 

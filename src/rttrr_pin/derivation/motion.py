@@ -62,8 +62,7 @@ def motion_symbols(model: Model) -> Iterator[Symbol]:
             yield Symbol(f"s_j{i + 1}", rf"s\varphi_{index(i + 1)}", Role.SINE, index=i + 1)
             yield Symbol(f"c_j{i + 1}", rf"c\varphi_{index(i + 1)}", Role.COSINE, index=i + 1)
     plain = model.nq == model.nv
-    rotations = [rotation for joint in model.moving for rotation in joint.type.rotations]
-    for k, rotation in enumerate(rotations, start=1):
+    for k, rotation in enumerate(model.rotations, start=1):
         rate, twice = (rf"\dot{{q}}_{index(k)}", rf"\ddot{{q}}_{index(k)}")
         if not plain:
             rate, twice = f"v_{index(k)}", rf"\dot{{v}}_{index(k)}"

@@ -19,7 +19,7 @@ from rttrr_pin.errors import InputError, UnknownNameError, shortened
 from rttrr_pin.implementations.protocol import Batch
 from rttrr_pin.implementations.table import check_complete, check_names, numbers_of_columns
 from rttrr_pin.implementations.table_files import READERS, Columns
-from rttrr_pin.implementations.text_results import TIMES, column_names
+from rttrr_pin.implementations.text_results import PAYLOAD, TIMES, column_names
 
 UNITS = {"s": 1.0, "ms": 1e-3, "us": 1e-6, "ns": 1e-9}
 
@@ -64,6 +64,8 @@ class Log:
 def is_log(path: str | Path, model: Model) -> bool:
     """Whether a table is a log of a real robot: it has a column of time, and driving forces, and time goes on.
 
+    A few rows that have rates and accelerations too are results of a program.
+
     Raises:
         InputError: the file cannot be read.
     """
@@ -71,8 +73,9 @@ def is_log(path: str | Path, model: Model) -> bool:
     if path.suffix.lower() not in READERS:
         return False
     columns, lines = READERS[path.suffix.lower()](path, model)
-    time = next((name for name in TIMES if name in columns), None)
-    if time is None or len(lines) < FEWEST or not any(name in columns for name in column_names(model)["tau"]):
+    time, names = next((name for name in TIMES if name in columns), None), column_names(model)
+    has = {key: any(name in columns for name in names[key]) for key in ("v", "a", "tau")}
+    if time is None or not has["tau"] or (len(lines) < FEWEST and has["v"] and has["a"]):
         return False
     return bool((np.diff(_time(columns, time, lines, path.name)) >= 0.0).all())
 
@@ -97,6 +100,11 @@ def read_log(path: str | Path, model: Model) -> Log:
     time = next((name for name in TIMES if name in columns), None)
     if time is None:
         raise InputError(f"{path.name} has no column time or t: a log needs the time of each row")
+    if payload := [column for column in columns if column.startswith(f"{PAYLOAD}_")]:
+        raise InputError(
+            f"{path.name} is a log, and has the column {shortened(payload[0])}: what the robot carried is looked for "
+            f"in it; leave columns of a payload out, or the column {time}, if these are results of a program"
+        )
     measured = [key for key in ("q", "v", "a", "tau") if key in ("q", "tau") or any(c in columns for c in names[key])]
     check_complete(columns, [column for key in measured for column in names[key]], path.name)
     values = {key: numbers_of_columns(columns, names[key], lines, path.name) for key in measured}

@@ -12,6 +12,7 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.identification import INERTIAL
 from rttrr_pin.core.model import Model
 from rttrr_pin.diagnosis.residual import PER_LINK, Residuals
+from rttrr_pin.diagnosis.rigid_tree import RigidTree
 
 Told = Callable[[Array, Array], tuple[str, Mapping[str, Any]]]
 """From fitted numbers and their standard errors to a sentence, and to numbers by name; NaN where nothing tells one."""
@@ -47,15 +48,16 @@ def candidates(residuals: Residuals) -> list[Candidate]:
         return directions
 
     found = []
-    for j, (name, turns) in enumerate(zip(model.v_names, _turns(model), strict=True)):
-        for kind, told in _of_joint(name, turns).items():
+    for j, (name, turns, still) in enumerate(zip(model.v_names, model.rotations, residuals.still, strict=True)):
+        for kind, told in (_at_rest if still else _of_joint)(name, turns).items():
             found.append(Candidate(kind, None, name, at(f"{COLUMN[kind]} {j}"), told))
     if model.nv > 1:
         every = at(*(f"factor {j}" for j in range(model.nv))).sum(axis=1, keepdims=True)
         found.append(Candidate("factor of all tau", None, None, every, _factor("tau of all joints")))
     found.append(Candidate("gravity", None, None, at(*(f"gravity {k}" for k in range(3))), _gravity(model)))
-    for i, together in reversed(_bodies(model).items()):  # of links that fit alike the outermost one is told
-        name, told = model.link_names[i], _body(model, i, together)
+    for body in reversed(RigidTree.of(model).bodies):  # of links that fit alike the outermost one is told
+        name, *together = (own.link.name for own in body.members)
+        i, told = model.link_index(name), _body(name, together)
         whole = [f"link {i} {k}" for k in range(PER_LINK)]
         found.append(Candidate("mass and centre of mass", name, None, at(*whole[:4]), told))
         found.append(Candidate("inertia", name, None, at(*whole), told))
@@ -67,27 +69,10 @@ COLUMN = {
     "Coulomb friction": "coulomb",
     "armature": "armature",
     "offset": "offset",
+    "force at rest": "offset",
     "factor of tau": "factor",
 }
 """By hypothesis on a joint its column."""
-
-
-def _turns(model: Model) -> list[bool]:
-    return [turn for joint in model.moving for turn in joint.type.rotations]
-
-
-def _bodies(model: Model) -> dict[int, list[str]]:
-    """By link on a joint that moves, the links that are fixed to it."""
-    carrier: dict[int, int] = {}
-    for i, joint in enumerate(model.joints):
-        if joint.nv:
-            carrier[i] = i
-        elif joint.parent in carrier:
-            carrier[i] = carrier[joint.parent]
-    bodies: dict[int, list[str]] = {}
-    for i, own in carrier.items():
-        bodies.setdefault(own, []).extend([model.link_names[i]] * (i != own))
-    return bodies
 
 
 def _of_joint(name: str, turns: bool) -> dict[str, Told]:
@@ -98,6 +83,15 @@ def _of_joint(name: str, turns: bool) -> dict[str, Told]:
         "Coulomb friction": _number(f"{name} has Coulomb friction", "Coulomb friction", force),
         "armature": _number(f"{name} has armature (rotor and gears)", "armature", mass),
         "offset": _number(f"tau of {name} is measured with an offset", "offset", force, signed=True),
+        "factor of tau": _factor(f"tau of {name}"),
+    }
+
+
+def _at_rest(name: str, turns: bool) -> dict[str, Told]:
+    """The same of a joint that stands still."""
+    what = f"{name} stands still, and friction at rest or an offset is in its tau"
+    return {
+        "force at rest": _number(what, "force at rest", "N m" if turns else "N", signed=True),
         "factor of tau": _factor(f"tau of {name}"),
     }
 
@@ -130,8 +124,7 @@ def _gravity(model: Model) -> Told:
     return told
 
 
-def _body(model: Model, i: int, together: list[str]) -> Told:
-    name = model.link_names[i]
+def _body(name: str, together: list[str]) -> Told:
     where = f"{name} (or what is fixed to it: {', '.join(together[:3])})" if together else name
 
     def told(x: Array, error: Array) -> tuple[str, Mapping[str, Any]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import accumulate
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,9 @@ ROWS = 1500
 
 AT_ONCE = 2000
 """Rows whose regressor is held at a time."""
+
+STILL = 1e-3
+"""Of coordinates [rad or m]: what friction at rest lets a joint move, about, at most."""
 
 NONE = 1e-6
 """Of the root mean square of tau: what a log without noise is taken to have, since its numbers have digits."""
@@ -68,6 +72,14 @@ class Residuals:
     def whole(self) -> Array:
         """The residual at each row of the log, (N, nv) [N m or N]."""
         return self.log.tau - self.predicted
+
+    @property
+    def still(self) -> list[bool]:
+        """Of each degree of freedom, whether it hardly moves, so that nothing tells friction at rest from an offset."""
+        begins = accumulate((joint.nq for joint in self.model.moving), initial=0)
+        moved = np.ptp(self.log.batch.q, axis=0)
+        joints = zip(begins, self.model.moving, strict=False)
+        return [bool((moved[at : at + joint.nq] < STILL).all()) for at, joint in joints for _ in range(joint.nv)]
 
     @property
     def size(self) -> Array:

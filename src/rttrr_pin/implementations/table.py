@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
+from functools import reduce
 from pathlib import Path
 from typing import Any
 
@@ -18,7 +19,7 @@ from rttrr_pin.core.inputs import coordinates, finite
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load, same_loads
 from rttrr_pin.core.wrench import QUANTITIES
-from rttrr_pin.errors import ImplementationError, InputError, UnknownNameError, shortened
+from rttrr_pin.errors import ImplementationError, InputError, UnknownNameError, listed, shortened
 from rttrr_pin.implementations.allowance import of_printed
 from rttrr_pin.implementations.protocol import Batch, Evaluation, kernel_of, shape_of
 from rttrr_pin.implementations.table_files import READERS, Columns
@@ -207,8 +208,7 @@ def check_complete(columns: Columns, names: Sequence[str], table: str) -> None:
     """
     missing = [column for column in names if column not in columns]
     if missing:
-        more = f" and {len(missing) - 8} more" if len(missing) > 8 else ""
-        raise InputError(f"{table} lacks the columns {', '.join(missing[:8])}{more}: see docs/notation.md")
+        raise InputError(f"{table} lacks the columns {listed(missing, 8)}: see docs/notation.md")
 
 
 def _payloads(
@@ -238,21 +238,28 @@ def numbers_of_columns(columns: Columns, names: Sequence[str], lines: Sequence[i
     Raises:
         InputError: one is no number.
     """
-    return _numbers(columns, names, lines, name)[0]
+    parts = [np.zeros((len(lines), 0))]
+    for column in names:
+        texts = columns[column]
+        if isinstance(texts, np.ndarray):
+            parts.append(_binary(texts, column, name)[:, None])
+        else:
+            parts.append(_parsed(texts, column, lines, name)[:, None])
+    return np.concatenate(parts, axis=1)
 
 
 def _numbers(columns: Columns, names: Sequence[str], lines: Sequence[int], name: str) -> tuple[Array, Digits]:
     """One array of a state or result, and the digits that it was printed with."""
-    digits, parts = Digits(), [np.zeros((len(lines), 0))]
-    for column in names:
-        texts = columns[column]
-        if isinstance(texts, np.ndarray):
-            values, of_column = _binary(texts, column, name)
-        else:
-            values, of_column = _parsed(texts, column, lines, name), Digits.of(texts)
-        digits = digits.with_all(of_column)
-        parts.append(values[:, None])
-    return np.concatenate(parts, axis=1), digits
+    printed = (_digits(columns[column]) for column in names)
+    return numbers_of_columns(columns, names, lines, name), reduce(Digits.with_all, printed, Digits())
+
+
+def _digits(texts: Sequence[str] | np.ndarray[Any, Any]) -> Digits:
+    """Those that a column was printed with, or that its type holds."""
+    if not isinstance(texts, np.ndarray):
+        return Digits.of(texts)
+    single = texts.dtype.kind == "f" and texts.dtype.itemsize < 8
+    return Digits(int(np.finfo(texts.dtype).precision) if single else 17, 400)
 
 
 def _parsed(texts: Sequence[str], column: str, lines: Sequence[int], name: str) -> Array:
@@ -267,10 +274,8 @@ def _parsed(texts: Sequence[str], column: str, lines: Sequence[int], name: str) 
     return np.array(values)
 
 
-def _binary(values: np.ndarray[Any, Any], column: str, name: str) -> tuple[Array, Digits]:
-    """A column of a binary file, and the digits that its type holds."""
+def _binary(values: np.ndarray[Any, Any], column: str, name: str) -> Array:
+    """A column of a binary file."""
     if values.dtype.kind not in "iuf":
         raise InputError(f"{name}, column {column}: {values.dtype} is no type of real numbers: write it as float64")
-    single = values.dtype.kind == "f" and values.dtype.itemsize < 8
-    digits = Digits(int(np.finfo(values.dtype).precision), 400) if single else Digits(17, 400)
-    return values.astype(np.float64), digits
+    return values.astype(np.float64)

@@ -97,8 +97,7 @@ def _of_angle(model: Model, angle: Angle) -> Entry:
 def axis_units(model: Model) -> tuple[list[str], list[str]]:
     """Units of the entries of q, and of those of v; accelerations are per second more."""
     q: list[str] = [coordinate.unit or "1" for joint in model.moving for coordinate in joint.type.coordinates]
-    rotations = [rotation for joint in model.moving for rotation in joint.type.rotations]
-    return q, ["rad/s" if rotation else "m/s" for rotation in rotations]
+    return q, ["rad/s" if rotation else "m/s" for rotation in model.rotations]
 
 
 def labelled(names: Sequence[str], units: Sequence[str]) -> str:
