@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ast
 from collections import Counter
 
 import numpy as np
@@ -10,10 +9,9 @@ import pytest
 
 import rttrr_pin
 from rttrr_pin import RandomPayload, Robot
-from rttrr_pin.diagnosis.mechanics import mechanics, term_of
-from rttrr_pin.diagnosis.mutations import at, is_local, mutations, place_of
+from rttrr_pin.diagnosis.mechanics import mechanics, sentences, term_of
+from rttrr_pin.diagnosis.mutations import at, is_local, mutations
 from rttrr_pin.diagnosis.relevance import concerned
-from rttrr_pin.diagnosis.terms import LETTERS, SENTENCES, named
 from rttrr_pin.diagnosis.variant import Values, Variant, run
 from rttrr_pin.implementations import Batch
 from rttrr_pin.validation import Sampler
@@ -35,17 +33,11 @@ def same(one: Values, other: Values) -> bool:
     return all(np.array_equal(values, other[key]) for key, values in one.items())
 
 
-def test_every_term_and_every_operator_has_words() -> None:
+def test_every_term_and_every_operator_has_words(rttrr: Robot) -> None:
+    """Code, in backticks, stands behind the colon alone."""
     for error in mutations():
-        syntax, node = place_of(error)
-        around = [ast.unparse(x) for x in syntax.around(node) if isinstance(x, ast.expr | ast.keyword)]
-        expression = error.expression.partition(" in ")[2] or error.expression
-        name = named(error.function, [expression, *around])
-        assert name is not None, error.id
-        assert name[0] == expression or expression in LETTERS, error.id
-        operator = "take" if error.operator.startswith("take ") and expression in LETTERS else error.operator
-        assert operator in SENTENCES or error.operator == "take z alone of", error.id
-        assert "`" not in term_of(error)[0]
+        does, repair = sentences(error, rttrr.model, None)
+        assert "`" not in does + repair.partition(": `")[0], error.id
 
 
 def test_what_the_table_does_not_know_is_told_by_its_code(rttrr: Robot, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -92,7 +92,6 @@ def _artificial(node: ast.AST, function: str, inner: bool) -> Iterator[Error]:
     """A term changed in the tenth digit, a cross product with itself or for its last operand, a number squared."""
     line = getattr(node, "lineno", 0)
     if is_sum(node) and not inner and function in STEPS:
-        assert isinstance(node, ast.expr)
         parts = [(sign, ast.unparse(term)) for sign, term in terms(node)]
         for k, (sign, term) in enumerate(parts):
             changed = (sign, f"({term}) * (1 + {DETUNED})")

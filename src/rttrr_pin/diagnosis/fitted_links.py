@@ -9,8 +9,10 @@ from typing import Any, Literal
 
 import numpy as np
 
+from rttrr_pin.core.algebra import Matrix
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.identification import INERTIAL
+from rttrr_pin.core.inertia import SpatialInertia
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.diagnosis.altering import (
     TEN,
@@ -106,8 +108,7 @@ def _apply(variant: Variant, x: Sequence[float], fitted: Fitted, indices: tuple[
 
 def _six(x: Array) -> Array:
     """The tensor of six entries in the order of the parameters."""
-    xx, xy, yy, xz, yz, zz = x.tolist()
-    return np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    return SpatialInertia.of_parameters((0.0, 0.0, 0.0, 0.0, *x.tolist())).J.array
 
 
 def _entries(tensor: Array) -> dict[str, float]:
@@ -148,7 +149,7 @@ def _mass_direction(link: Link) -> Array:
 
 def _tensor_rows(J: Array) -> Array:
     """The ten parameters of a tensor alone."""
-    return np.concatenate([np.zeros(4), J[[0, 0, 1, 0, 1, 2], [0, 1, 1, 2, 2, 2]]])
+    return np.array(SpatialInertia(J=Matrix.of(J)).parameters, dtype=np.float64)
 
 
 def _size(link: Link) -> float:

@@ -21,6 +21,8 @@ from rttrr_pin.urdf.document import UrdfDocument
 ALL_PAIRS = 12
 """Joints up to which every two may be exchanged; beyond, neighbours."""
 
+EXCHANGED = "joints exchanged"
+
 Order = tuple[int, ...]
 """Of the joints of one coordinate: the k-th column is taken for that of the joint of this index."""
 
@@ -88,22 +90,20 @@ def _exchanges(own: Sequence[Slots]) -> Iterator[tuple[str, str, Order]]:
     for i, j in pairs:
         order = list(range(n))
         order[i], order[j] = j, i
-        a, b = own[i].name, own[j].name
-        yield f"{a} and {b} exchanged", f"{a} and {b} are exchanged", tuple(order)
+        yield EXCHANGED, f"{own[i].name} and {own[j].name} are exchanged", tuple(order)
 
 
 def _both(id: str, sentence: str, own: Sequence[Slots], order: Order) -> Iterator[Hypothesis]:
     """The order of all that is per joint, and of tau alone."""
     said: Mapping[str, Any] = {"order": [own[k].name for k in order]}
     repair = f"order by joint name: {', '.join(one.name for one in own)}"
-    joint = " and ".join(own[k].name for k in range(len(own)) if order[k] != k) if id.endswith("exchanged") else None
-    name = "joints exchanged" if joint else id
+    joint = " and ".join(own[k].name for k in range(len(own)) if order[k] != k) if id == EXCHANGED else None
     for end, where, apply in (
         ("", "q, v, a and tau", partial(_ordered, own=own, order=order)),
         (" in tau", "tau alone", partial(_tau_ordered, own=own, order=order)),
     ):
         yield Hypothesis(
-            id=name + end,
+            id=id + end,
             kind="convention",
             sentence=f"{sentence}, in {where}",
             repair=repair,

@@ -7,7 +7,7 @@ import re
 from functools import lru_cache
 
 from rttrr_pin.core.model import Model
-from rttrr_pin.diagnosis.hypothesis import Apply, Hypothesis
+from rttrr_pin.diagnosis.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.mutations import Mutation, at, functions, is_local, mutations_of, place_of, source_line
 from rttrr_pin.diagnosis.relevance import concerned, runs
 from rttrr_pin.diagnosis.terms import LETTERS, SENTENCES, UNKNOWN, named
@@ -56,7 +56,7 @@ def hypothesis(error: Mutation, model: Model, link: int | None = None) -> Hypoth
         kind="mechanics",
         sentence=sentence,
         repair=repair,
-        apply=_having(error),
+        apply=lambda variant, x: variant.with_mutation(error),
         link=None if link is None else model.links[link].name,
         joint=None if link is None else model.joints[link].name,
         equation=next((found[1] for found in equations if found), ""),
@@ -104,10 +104,6 @@ def _lines(error: Mutation) -> list[int]:
     statement, *around = (x for x in syntax.around(node) if isinstance(x, ast.stmt))
     loops = [x.lineno for x in around if isinstance(x, ast.For)]
     return [error.line, *(syntax.first + line - 1 for line in (statement.end_lineno or 0, *loops))]
-
-
-def _having(error: Mutation) -> Apply:
-    return lambda variant, numbers: variant.with_mutation(error)
 
 
 def _place(error: Mutation, model: Model, link: int | None) -> str:

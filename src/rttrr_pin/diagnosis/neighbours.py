@@ -33,10 +33,8 @@ class PairSlip:
 def neighbours(model: Model) -> Iterator[Hypothesis]:
     """Slips of fixed links, and of links with a twin."""
     for i, joint in enumerate(model.joints):
-        if joint.type is FIXED and joint.parent >= 0 and model.links[i].mass:
-            yield from _of_pair(model, LUMPED, i, joint.parent)
-        elif joint.type is FIXED and model.links[i].mass:
-            yield from _of_pair(model, LUMPED[:1], i, joint.parent)
+        if joint.type is FIXED and model.links[i].mass:
+            yield from _of_pair(model, LUMPED if joint.parent >= 0 else LUMPED[:1], i, joint.parent)
     index = {link.name: i for i, link in enumerate(model.links)}
     for i, link in enumerate(model.links):
         twins = [index[name] for name in other_side(link.name) if name in index]

@@ -10,7 +10,7 @@ import ast
 import copy
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import Any, Protocol, TypeGuard
 
 LEVERS = {"p": "r_C", "r_C": "p", "joint.p": "body.r_C", "body.p": "body.r_C", "body.r_C": "joint.p"}
 """The lever of the joint, and that of the centre of mass: one is taken for the other."""
@@ -93,14 +93,14 @@ def cross_product(node: ast.AST) -> tuple[ast.expr, ast.expr] | None:
     return None
 
 
-def is_sum(node: ast.AST) -> bool:
+def is_sum(node: ast.AST | None) -> TypeGuard[ast.BinOp]:
     """Whether two terms are added or subtracted there."""
     return isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub)
 
 
 def terms(node: ast.expr) -> list[tuple[str, ast.expr]]:
     """The terms of a sum with their signs."""
-    if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Add | ast.Sub):
+    if is_sum(node):
         return [*terms(node.left), ("+" if isinstance(node.op, ast.Add) else "-", node.right)]
     return [("+", node)]
 
@@ -139,7 +139,7 @@ class Syntax:
     def inner(self, node: ast.AST) -> bool:
         """Whether a node is the beginning of a longer sum."""
         above = self.parents.get(id(node))
-        return isinstance(above, ast.BinOp) and is_sum(above) and above.left is node
+        return is_sum(above) and above.left is node
 
     def statement(self, node: ast.AST) -> ast.AST:
         """The innermost statement that a node is in."""

@@ -43,7 +43,7 @@ def _times(model: Model, batch: Batch, load: Load, factor: float) -> Load:
 
 def _other_axes(to_base: bool) -> Taken:
     """The same numbers in base axes, or in those of the link."""
-    return lambda model, batch, load: load if load.in_base == to_base else replace(load, in_base=to_base)
+    return lambda model, batch, load: replace(load, in_base=to_base)
 
 
 def _moved(arm: Callable[[Model, Batch, Load], Array]) -> Taken:
@@ -78,8 +78,7 @@ def _at_parent(model: Model, batch: Batch, load: Load) -> Load:
 
 def _spatial_in_base(model: Model, batch: Batch, load: Load) -> Load:
     """The numbers in base axes and about the origin of the base."""
-    own = replace(load, in_base=True)
-    return replace(own, n=own.n + np.cross(_from_base(model, batch, own), own.f))
+    return _moved(_from_base)(model, batch, replace(load, in_base=True))
 
 
 def _exchanged(model: Model, batch: Batch, load: Load) -> Load:

@@ -30,12 +30,8 @@ class JointSlip:
     everywhere: bool = True
 
 
-def placements(model: Model) -> list[Hypothesis]:
+def placements(model: Model) -> Iterator[Hypothesis]:
     """All hypotheses on placements and axes; those that change no number of the robot are left out."""
-    return list(_placements(model))
-
-
-def _placements(model: Model) -> Iterator[Hypothesis]:
     still = _on_still_links(model)
     for slip in SLIPS:
         changed = tuple(i for i, joint in enumerate(model.joints) if _changes(joint, slip.placed(joint), i in still))
@@ -98,11 +94,8 @@ def _p(change: Callable[[Joint], Array]) -> Placed:
 
 def _axis_of_parent(joint: Joint) -> Joint:
     """The axis as a vector of the parent's frame: in {i} it is R^T axis."""
-    return replace(joint, axis=_unit(joint.R.T @ joint.axis)) if joint.type.has_axis else joint
-
-
-def _unit(axis: Array) -> Array:
-    return np.asarray(axis / np.linalg.norm(axis))
+    axis = joint.R.T @ joint.axis
+    return replace(joint, axis=axis / np.linalg.norm(axis)) if joint.type.has_axis else joint
 
 
 def _axis(k: int) -> Placed:

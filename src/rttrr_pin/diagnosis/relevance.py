@@ -58,7 +58,7 @@ def _shows(error: Mutation) -> Possible:
     levers = error.operator.startswith("take ") and error.expression in LEVERS
     part = node
     whole = node.right if isinstance(node, ast.BinOp) and error.operator == "do not turn" else node
-    if isinstance(whole, ast.expr) and is_sum(whole):
+    if is_sum(whole):
         part = next(term for _, term in terms(whole) if ast.unparse(term) == error.expression)
     products = (part, *_factors(syntax.around(node)))
     conditions = {condition for x in products for condition in _conditions(x, levers)}
@@ -85,7 +85,7 @@ def _factors(around: Iterator[ast.AST]) -> Iterator[ast.AST]:
 
 def _conditions(node: ast.AST, levers: bool) -> set[Possible]:
     """What must be so that an expression is not zero: a product where all factors are, a sum where one term is."""
-    if isinstance(node, ast.expr) and is_sum(node):
+    if is_sum(node):
         alternatives = [_conditions(term, levers) for _, term in terms(node)]
         return {lambda model, i: any(all(one(model, i) for one in some) for some in alternatives)}
     text = ast.unparse(node) if isinstance(node, ast.Name | ast.Attribute) else ""
