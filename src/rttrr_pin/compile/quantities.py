@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rttrr_pin.core.algebra import Matrix, Scalar, Vector
+from rttrr_pin.core.algebra import Scalar
 from rttrr_pin.core.dual import Dual, part_of
 from rttrr_pin.core.dynamics import Result, bodies, dynamics, generalised_forces, joint_effects, joint_states
+from rttrr_pin.core.inertia import SpatialInertia
 from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
@@ -146,9 +147,8 @@ def _link_placements(motion: Motion) -> list[Scalar]:
 
 def _with_parameters(body: Body, first: int) -> Body:
     """The body as a point mass at its origin, whose ten parameters are directions from `first` on."""
-    m, x, y, z, xx, xy, yy, xz, yz, zz = (Dual(0.0, {first + k: 1.0}) for k in range(10))
-    tensor = Matrix((Vector(xx, xy, xz), Vector(xy, yy, yz), Vector(xz, yz, zz)))
-    return replace(body, M=m + 1.0, r_C=Vector(x, y, z), I=tensor)
+    own = SpatialInertia.of_parameters([Dual(0.0, {first + k: 1.0}) for k in range(10)])
+    return replace(body, M=own.m + 1.0, r_C=own.h, I=own.J)
 
 
 def _derivatives(by: str) -> Quantity:

@@ -102,7 +102,6 @@ TERMS: dict[str, dict[str, str]] = {
         "v_dot=u * a": "the acceleration u a of the joint",
         "body.p": "the place p_0 of the joint at zero",
         "body.R @ (u * q)": "the slide R_0 u q of the joint",
-        "body.p + body.R @ (u * q)": "the place p_0 + R_0 u q of the joint",
     },
     "Prismatic.driving_force": {"body.axis.dot(f)": "the driving force u . f"},
     "Planar.motion": {
@@ -113,7 +112,6 @@ TERMS: dict[str, dict[str, str]] = {
         "body.R @ rotation(body.axis, theta, sincos)": "the rotation R_0 R(z, theta) of the planar joint",
         "body.p": "the place p_0 of the planar joint at zero",
         "body.R @ Vector(x, y, 0)": "the slide R_0 (x, y, 0) of the planar joint",
-        "body.p + body.R @ Vector(x, y, 0)": "the place p_0 + R_0 (x, y, 0) of the planar joint",
     },
     "Planar.driving_force": {
         "f.x": "the driving force along x",
@@ -128,7 +126,6 @@ TERMS: dict[str, dict[str, str]] = {
         "body.R @ quaternion_rotation(*q[3:])": "the rotation R_0 R(quaternion) of the floating joint",
         "body.p": "the place p_0 of the floating joint at zero",
         "body.R @ Vector(*q[:3])": "the place R_0 (x, y, z) of the floating joint",
-        "body.p + body.R @ Vector(*q[:3])": "the place p_0 + R_0 (x, y, z) of the floating joint",
     },
     "Floating.driving_force": {
         "*f": "the driving force, components of f,",
@@ -141,7 +138,6 @@ LETTERS: dict[str, str] = {
     "IDENTITY": "1",
     "along": "u u^T",
     "force": "what was added before",
-    "R": "R",
     "R.T": "R^T",
     "joint.R": "R",
     "body.R": "R_0",
@@ -152,7 +148,6 @@ LETTERS: dict[str, str] = {
     "body.r_C": "r_C (from the link's origin to its centre of mass)",
     "f": "the force f",
     "n": "the moment n",
-    "gravity": "gravity",
     "(y * y + z * z) * 2": "2 (y y + z z)",
     "(x * x + z * z) * 2": "2 (x x + z z)",
     "(x * x + y * y) * 2": "2 (x x + y y)",
