@@ -27,9 +27,9 @@ def tau_scaled(variant: Variant, factors: Mapping[int, float]) -> Variant:
     return variant.with_output(lambda batch, values: {**values, "tau": _times(values["tau"], factors)})
 
 
-def geared(variant: Variant, joint: Slots, factor: float) -> Variant:
+def geared(variant: Variant, x: Sequence[float], joint: Slots) -> Variant:
     """The program that has q, v, a and tau of a joint multiplied by a factor."""
-    q, v = dict.fromkeys(joint.q, factor), dict.fromkeys(joint.v, factor)
+    q, v = dict.fromkeys(joint.q, float(x[0])), dict.fromkeys(joint.v, float(x[0]))
     return tau_scaled(scaled(variant, q, v, v), v)
 
 

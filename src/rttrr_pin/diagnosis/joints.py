@@ -177,13 +177,9 @@ def _gears(model: Model) -> Iterator[Hypothesis]:
             kind="joint",
             sentence=f"q, v, a and tau of {own.name} are taken as those of a motor behind a gear",
             repair=f"convert q, v, a and tau of {own.name} by the gear ratio",
-            apply=partial(_geared, own=own),
+            apply=partial(geared, joint=own),
             joint=own.name,
             start=(1.1,),
             neutral=(1.0,),
             values=lambda x: {"gear ratio": x[0]},
         )
-
-
-def _geared(variant: Variant, x: Sequence[float], own: Slots) -> Variant:
-    return geared(variant, own, float(x[0]))

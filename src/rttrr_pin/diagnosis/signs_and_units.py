@@ -152,7 +152,7 @@ def _of_joint(model: Model, joint: Slots) -> Iterator[Hypothesis]:
             kind="convention",
             sentence=f"{name} counts in the opposite direction: its axis, or q, v, a and tau, have the opposite sign",
             repair=f"negate the axis of {name}",
-            apply=lambda variant, x: geared(variant, joint, -1.0),
+            apply=lambda variant, x: geared(variant, (-1.0,), joint),
             joint=name,
             line=line_of(model, joint=name),
         )
