@@ -26,7 +26,6 @@ PACKAGES = (
     "rttrr_pin.validation",
     "rttrr_pin.diagnosis",
     "rttrr_pin.laws",
-    "rttrr_pin.diagnosis",
     "rttrr_pin.inspection",
     "rttrr_pin.auditing",
     "rttrr_pin.derivation",

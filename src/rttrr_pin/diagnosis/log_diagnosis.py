@@ -15,7 +15,7 @@ from rttrr_pin.diagnosis.evidence import rms
 from rttrr_pin.diagnosis.log import Log, read_log
 from rttrr_pin.diagnosis.log_causes import Candidate, candidates
 from rttrr_pin.diagnosis.residual import Residuals, residuals_of
-from rttrr_pin.diagnosis.selection import SAME, Reduced, chosen, fitted, reduced
+from rttrr_pin.diagnosis.selection import SAME, Reduced, chosen, columns_of, fitted, reduced
 from rttrr_pin.errors import InputError
 from rttrr_pin.reporting.results import Summarised, finite
 from rttrr_pin.robot import Robot, model_of
@@ -167,8 +167,7 @@ def explain(robot: Robot, log: Log) -> LogDiagnosis:
     every = candidates(residuals)
     A = residuals.columns * residuals.weights[:, None]
     problem = reduced(A, residuals.means * residuals.weights, residuals.model.nv, residuals.known)
-    causes = _seen(problem, residuals, every)
-    x = _numbers(problem, causes)
+    causes, x = _seen(problem, residuals, every)
     total = sum((own.directions @ numbers for own, (numbers, _, _) in zip(causes, x, strict=True)), np.zeros(1))
     before = _of_joints(residuals, residuals.whole)
     after = _of_joints(residuals, residuals.whole - residuals.made_of(total)) if causes else before
@@ -179,8 +178,10 @@ def explain(robot: Robot, log: Log) -> LogDiagnosis:
     return LogDiagnosis(robot.name, log.name, len(log), seconds, verdict, told, before, after, log.notes)
 
 
-def _seen(problem: Reduced, residuals: Residuals, every: Sequence[Candidate]) -> list[Candidate]:
-    """The causes that gain more than chance, and make enough of a difference."""
+def _seen(
+    problem: Reduced, residuals: Residuals, every: Sequence[Candidate]
+) -> tuple[list[Candidate], list[tuple[Array, Array, Array]]]:
+    """The causes that gain more than chance, and make enough of a difference; with their numbers."""
     allowed = list(every)
     while True:
         causes = [allowed[k] for k in chosen(problem, [own.directions for own in allowed])]
@@ -191,7 +192,7 @@ def _seen(problem: Reduced, residuals: Residuals, every: Sequence[Candidate]) ->
             if not (_size(residuals, own, numbers[0]) > SEEN * residuals.noise).any()
         ]
         if not small:
-            return causes
+            return causes, x
         allowed = [own for own in allowed if own not in small]
 
 
@@ -204,18 +205,16 @@ def _numbers(problem: Reduced, causes: Sequence[Candidate]) -> list[tuple[Array,
     """Of each cause its fitted numbers, their standard errors, and which of them motion tells."""
     if not causes:
         return []
-    D = np.hstack([own.directions for own in causes])
-    A = problem.A @ (problem.lengths[:, None] * D)
-    sizes = np.linalg.norm(A, axis=0)
-    sizes[sizes == 0.0] = 1.0
-    _, x = fitted(problem, [own.directions for own in causes])[1:]
-    _, sigma, V = np.linalg.svd(A / sizes)
+    groups = [own.directions for own in causes]
+    A, sizes = columns_of(problem, groups)
+    x = fitted(problem, groups)[1]
+    _, sigma, V = np.linalg.svd(A)
     kept = sigma > 1e-7 * sigma.max(initial=0.0)
     full = np.zeros(len(V), dtype=bool)
     full[: len(kept)] = kept
     error = np.sqrt(((V[full] / sigma[kept][:, None]) ** 2).sum(axis=0) * problem.scale) / sizes
     told = np.linalg.norm(V[~full], axis=0) < UNTOLD
-    ends = np.cumsum([own.directions.shape[1] for own in causes])[:-1]
+    ends = np.cumsum([own.shape[1] for own in groups])[:-1]
     parts = (np.split(own, ends) for own in (x, error, told))
     return list(zip(*parts, strict=True))
 

@@ -91,22 +91,27 @@ def _solved(A: Array, y: Array) -> Array:
     return np.asarray(np.linalg.lstsq(A, y, rcond=DEPENDENT)[0])
 
 
-def fitted(problem: Reduced, groups: Sequence[Array]) -> tuple[float, int, Array]:
-    """Sum of squares that groups leave, over the scale; their rank; their numbers, one behind the other.
+def fitted(problem: Reduced, groups: Sequence[Array]) -> tuple[float, Array]:
+    """Sum of squares that groups leave, over the scale; their numbers, one behind the other.
 
     Args:
         problem: the problem.
         groups: by group, the directions (columns, numbers) of its numbers.
     """
     if not groups:
-        return float(problem.y @ problem.y) / problem.scale, 0, np.zeros(0)
-    D = np.hstack(groups)
-    A = problem.A @ (problem.lengths[:, None] * D)
+        return float(problem.y @ problem.y) / problem.scale, np.zeros(0)
+    A, sizes = columns_of(problem, groups)
+    x = _solved(A, problem.y)
+    left = problem.y - A @ x
+    return float(left @ left) / problem.scale, x / sizes
+
+
+def columns_of(problem: Reduced, groups: Sequence[Array]) -> tuple[Array, Array]:
+    """Columns of one or more groups, each of length 1, and what they were divided by."""
+    A = problem.A @ (problem.lengths[:, None] * np.hstack(groups))
     sizes = np.linalg.norm(A, axis=0)
     sizes[sizes == 0.0] = 1.0
-    x, _, rank, _ = np.linalg.lstsq(A / sizes, problem.y, rcond=DEPENDENT)
-    left = problem.y - A @ (x / sizes)
-    return float(left @ left) / problem.scale, int(rank), x / sizes
+    return A / sizes, sizes
 
 
 def chosen(problem: Reduced, groups: Sequence[Array]) -> list[int]:
@@ -116,7 +121,7 @@ def chosen(problem: Reduced, groups: Sequence[Array]) -> list[int]:
         problem: the problem.
         groups: as in `fitted`.
     """
-    search = _Search(problem, [_scaled(problem, own) for own in groups])
+    search = _Search(problem, [columns_of(problem, [own])[0] for own in groups])
     own = search.forward([])
     while True:  # what was chosen first, before the others were known, may be better said otherwise
         tries = [search.forward([i for i in own if i != k], without=k) for k in own]
@@ -124,13 +129,6 @@ def chosen(problem: Reduced, groups: Sequence[Array]) -> list[int]:
         if search.cost(better) >= search.cost(own) - SAME:
             return own
         own = better
-
-
-def _scaled(problem: Reduced, directions: Array) -> Array:
-    """Columns of a group, each of length 1."""
-    A = problem.A @ (problem.lengths[:, None] * directions)
-    sizes = np.linalg.norm(A, axis=0)
-    return np.asarray(A / np.where(sizes > 0.0, sizes, 1.0))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -15,12 +15,12 @@ from rich.text import Text
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import STANDARD_GRAVITY
 from rttrr_pin.core.wrench import QUANTITIES
-from rttrr_pin.exact import Adjudication, Assessment, Deviation
-from rttrr_pin.implementations import Evaluation
 from rttrr_pin.validation.compare import ADJUDICATED, Row
-from rttrr_pin.validation.run import Validation
 
-if TYPE_CHECKING:
+if TYPE_CHECKING:  # other features have `drawn` and `word` from here
+    from rttrr_pin.exact import Adjudication, Assessment, Deviation
+    from rttrr_pin.implementations import Evaluation
+    from rttrr_pin.validation.run import Validation
     from rttrr_pin.validation.search import WorstCase  # loads scipy
     from rttrr_pin.validation.state import StateComparison, StateReport
 
