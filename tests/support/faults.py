@@ -9,14 +9,14 @@ from functools import cached_property
 import numpy as np
 
 from rttrr_pin.core.model import Model
-from rttrr_pin.diagnosis.evidence import Evidence, flat, screened, spread
-from rttrr_pin.diagnosis.fitting import Explanation
-from rttrr_pin.diagnosis.hypothesis import Hypothesis
-from rttrr_pin.diagnosis.predictions import Raw, applied, predicted, raw_changes
+from rttrr_pin.diagnosis.engine.evidence import Evidence, flat, screened, spread
+from rttrr_pin.diagnosis.engine.fitting import Explanation
+from rttrr_pin.diagnosis.engine.predictions import Raw, applied, predicted, raw_changes
+from rttrr_pin.diagnosis.engine.search import Search
 from rttrr_pin.diagnosis.run import diagnose, hypotheses_of
-from rttrr_pin.diagnosis.search import Search
 from rttrr_pin.diagnosis.states import sample_states
-from rttrr_pin.diagnosis.variant import Variant
+from rttrr_pin.diagnosis.variants.hypothesis import Hypothesis
+from rttrr_pin.diagnosis.variants.variant import Variant
 from rttrr_pin.implementations import Batch, Evaluation, Implementation, default_allowance, make_implementation
 from rttrr_pin.implementations.allowance import of_printed
 from rttrr_pin.loading import load

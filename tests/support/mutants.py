@@ -17,9 +17,9 @@ from typing import Any
 import pytest
 
 from rttrr_pin.core import dynamics, newton_euler
-from rttrr_pin.diagnosis.mutations import EQUIVALENT, STEPS, compiled, functions, generated
-from rttrr_pin.diagnosis.mutations import Mutation as Mutant
-from rttrr_pin.diagnosis.operators import Error, cross_product, errors, is_sum, summed, terms
+from rttrr_pin.diagnosis.variants.mutations import EQUIVALENT, STEPS, compiled, functions, generated
+from rttrr_pin.diagnosis.variants.mutations import Mutation as Mutant
+from rttrr_pin.diagnosis.variants.operators import Error, cross_product, errors, is_sum, summed, terms
 
 __all__ = ["DETUNED", "EQUIVALENT", "Mutant", "mutant", "mutants", "planted"]
 

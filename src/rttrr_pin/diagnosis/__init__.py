@@ -7,17 +7,17 @@ from typing import TYPE_CHECKING
 from rttrr_pin.lazy import lazy
 
 if TYPE_CHECKING:
-    from rttrr_pin.diagnosis.compare import Comparison as Comparison
-    from rttrr_pin.diagnosis.compare import compare_robots as compare_robots
-    from rttrr_pin.diagnosis.difference import Difference as Difference
-    from rttrr_pin.diagnosis.effects_of import Effect as Effect
-    from rttrr_pin.diagnosis.log import Log as Log
-    from rttrr_pin.diagnosis.log import is_log as is_log
-    from rttrr_pin.diagnosis.log import read_log as read_log
-    from rttrr_pin.diagnosis.log_diagnosis import JointResidual as JointResidual
-    from rttrr_pin.diagnosis.log_diagnosis import LogCause as LogCause
-    from rttrr_pin.diagnosis.log_diagnosis import LogDiagnosis as LogDiagnosis
-    from rttrr_pin.diagnosis.log_diagnosis import diagnose_log as diagnose_log
+    from rttrr_pin.diagnosis.descriptions.compare import Comparison as Comparison
+    from rttrr_pin.diagnosis.descriptions.compare import compare_robots as compare_robots
+    from rttrr_pin.diagnosis.descriptions.difference import Difference as Difference
+    from rttrr_pin.diagnosis.descriptions.effects_of import Effect as Effect
+    from rttrr_pin.diagnosis.logs.log import Log as Log
+    from rttrr_pin.diagnosis.logs.log import is_log as is_log
+    from rttrr_pin.diagnosis.logs.log import read_log as read_log
+    from rttrr_pin.diagnosis.logs.log_diagnosis import JointResidual as JointResidual
+    from rttrr_pin.diagnosis.logs.log_diagnosis import LogCause as LogCause
+    from rttrr_pin.diagnosis.logs.log_diagnosis import LogDiagnosis as LogDiagnosis
+    from rttrr_pin.diagnosis.logs.log_diagnosis import diagnose_log as diagnose_log
     from rttrr_pin.diagnosis.results import Cause as Cause
     from rttrr_pin.diagnosis.results import Diagnosis as Diagnosis
     from rttrr_pin.diagnosis.results import NearMiss as NearMiss
@@ -29,12 +29,12 @@ if TYPE_CHECKING:
 __getattr__, __dir__, __all__ = lazy(
     __name__,
     {
-        "compare": ("Comparison", "compare_robots"),
+        "descriptions.compare": ("Comparison", "compare_robots"),
         "run": ("diagnose",),
-        "difference": ("Difference",),
-        "effects_of": ("Effect",),
-        "log": ("Log", "is_log", "read_log"),
-        "log_diagnosis": ("JointResidual", "LogCause", "LogDiagnosis", "diagnose_log"),
+        "descriptions.difference": ("Difference",),
+        "descriptions.effects_of": ("Effect",),
+        "logs.log": ("Log", "is_log", "read_log"),
+        "logs.log_diagnosis": ("JointResidual", "LogCause", "LogDiagnosis", "diagnose_log"),
         "results": ("Cause", "Diagnosis", "NearMiss", "Residual"),
         "states": ("Sample", "sample_states"),
     },

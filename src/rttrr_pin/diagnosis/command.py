@@ -17,7 +17,7 @@ from rttrr_pin.robot import Robot
 from rttrr_pin.validation.options import RunOptions, conditions, payload
 
 if TYPE_CHECKING:
-    from rttrr_pin.diagnosis.log_diagnosis import LogDiagnosis
+    from rttrr_pin.diagnosis.logs.log_diagnosis import LogDiagnosis
     from rttrr_pin.diagnosis.results import Diagnosis
 
 
@@ -54,7 +54,7 @@ def diagnose(
 
     Exit code: 0 agrees, 1 differs, 2 unusable input.
     """
-    from rttrr_pin.diagnosis.log import is_log
+    from rttrr_pin.diagnosis.logs.log import is_log
     from rttrr_pin.implementations.table_files import READERS
 
     if Path(run["robot"]).suffix.lower() in READERS:
@@ -69,8 +69,8 @@ def diagnose(
     console = Output(quiet=quiet or "-" in (json, html))
     result: Diagnosis | LogDiagnosis
     if results is not None and is_log(results, loaded.model):
-        from rttrr_pin.diagnosis.log_diagnosis import diagnose_log
-        from rttrr_pin.diagnosis.log_report import show_log
+        from rttrr_pin.diagnosis.logs.log_diagnosis import diagnose_log
+        from rttrr_pin.diagnosis.logs.log_report import show_log
 
         if options.payload is not None:
             raise InputError(f"{results} is a log, and takes no --payload: what the robot carried is looked for in it")

@@ -45,8 +45,8 @@ def compare(
 
     Exit code: 0 the same dynamics (limits and names may differ), 1 they differ, 2 unusable input.
     """
-    from rttrr_pin.diagnosis.compare import compare_robots
-    from rttrr_pin.diagnosis.compare_report import show_comparison
+    from rttrr_pin.diagnosis.descriptions.compare import compare_robots
+    from rttrr_pin.diagnosis.descriptions.compare_report import show_comparison
 
     options = RunOptions(robot=a, **run)
     other = replace(options, robot=b)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from rttrr_pin.diagnosis.compare import Comparison
-from rttrr_pin.diagnosis.compare_report import LEGEND, percent, remarks, values_of
-from rttrr_pin.diagnosis.compare_report import compared as compared_robots
-from rttrr_pin.diagnosis.log_diagnosis import LogDiagnosis
+from rttrr_pin.diagnosis.descriptions.compare import Comparison
+from rttrr_pin.diagnosis.descriptions.compare_report import LEGEND, percent, remarks, values_of
+from rttrr_pin.diagnosis.descriptions.compare_report import compared as compared_robots
+from rttrr_pin.diagnosis.logs.log_diagnosis import LogDiagnosis
 from rttrr_pin.diagnosis.page import Bars, Page, Rows, Said, by_decades, html, of_longest, points
 from rttrr_pin.diagnosis.report import compared, place, sentence, told
 from rttrr_pin.diagnosis.results import Cause, Diagnosis, Residual

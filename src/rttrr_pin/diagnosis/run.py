@@ -13,24 +13,24 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load, RandomPayload, load_of
 from rttrr_pin.core.wrench import QUANTITIES
-from rttrr_pin.diagnosis.conventions import conventions
-from rttrr_pin.diagnosis.counterexample import counterexample
-from rttrr_pin.diagnosis.dependence import dependence
-from rttrr_pin.diagnosis.evidence import Evidence, bits, part_of, places, rms
-from rttrr_pin.diagnosis.fitting import Explanation, growth
-from rttrr_pin.diagnosis.gathering import between, evidence_of, finite_states, part_of_result
-from rttrr_pin.diagnosis.hypothesis import Hypothesis
-from rttrr_pin.diagnosis.joint_terms import joint_terms
-from rttrr_pin.diagnosis.joints import joints
-from rttrr_pin.diagnosis.levers import levers
-from rttrr_pin.diagnosis.mechanics import mechanics
-from rttrr_pin.diagnosis.parameters import parameters
-from rttrr_pin.diagnosis.placements import placements
-from rttrr_pin.diagnosis.predictions import applied, predicted
+from rttrr_pin.diagnosis.catalogue.conventions import conventions
+from rttrr_pin.diagnosis.catalogue.joint_terms import joint_terms
+from rttrr_pin.diagnosis.catalogue.joints import joints
+from rttrr_pin.diagnosis.catalogue.levers import levers
+from rttrr_pin.diagnosis.catalogue.mechanics import mechanics
+from rttrr_pin.diagnosis.catalogue.parameters import parameters
+from rttrr_pin.diagnosis.catalogue.placements import placements
+from rttrr_pin.diagnosis.engine.counterexample import counterexample
+from rttrr_pin.diagnosis.engine.dependence import dependence
+from rttrr_pin.diagnosis.engine.evidence import Evidence, bits, part_of, places, rms
+from rttrr_pin.diagnosis.engine.fitting import Explanation, growth
+from rttrr_pin.diagnosis.engine.gathering import between, evidence_of, finite_states, part_of_result
+from rttrr_pin.diagnosis.engine.predictions import applied, predicted
+from rttrr_pin.diagnosis.engine.search import Progress, Search
 from rttrr_pin.diagnosis.results import Cause, Diagnosis, NearMiss, Residual
-from rttrr_pin.diagnosis.search import Progress, Search
 from rttrr_pin.diagnosis.states import sample_states
-from rttrr_pin.diagnosis.variant import Variant
+from rttrr_pin.diagnosis.variants.hypothesis import Hypothesis
+from rttrr_pin.diagnosis.variants.variant import Variant
 from rttrr_pin.errors import InputError
 from rttrr_pin.implementations import Batch, Implementation, label, make_implementation
 from rttrr_pin.implementations.protocol import evaluated

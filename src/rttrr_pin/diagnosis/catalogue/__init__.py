@@ -1,0 +1,1 @@
+"""Every hypothesis about a robot: conventions, parameters, joints, mechanics."""

@@ -1,0 +1,1 @@
+"""Two descriptions of one robot: their differences by link and joint, in numbers and in torques."""

@@ -1,0 +1,1 @@
+"""Which hypotheses explain a difference: evidence, predictions, search."""

@@ -1,0 +1,1 @@
+"""Logs of real robots: residuals by joint, and what explains most of them."""
