@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import subprocess
 import sys
+from collections.abc import Sequence
 from importlib.util import find_spec
 
 LARGE = ("pinocchio", "llvmlite", "yourdfpy", "trimesh", "rich", "click", "lxml", "importlib.metadata")
@@ -30,13 +31,20 @@ print([name for name in {names!r} if name in sys.modules])
 
 
 def test_nothing_large_is_imported() -> None:
-    code = f"import sys, numpy, rttrr_pin; print([name for name in {LARGE!r} if name in sys.modules])"
-    done = subprocess.run(
-        [sys.executable, "-I", "-S", "-c", with_packages(code)], capture_output=True, text=True, check=True
-    )
-    assert done.stdout.strip() == "[]", done.stdout
+    assert loaded(LARGE, "import numpy, rttrr_pin") == "[]"
 
 
-def with_packages(code: str) -> str:
-    """Without site, whose .pth files may import what they like."""
-    return f"import sys; sys.path[:] = {sys.path!r}\n{code}"
+def test_scipy_is_for_logs_whose_rates_are_derived_and_other_results_load_none() -> None:
+    assert loaded(["scipy"], "import rttrr_pin.diagnosis.run, rttrr_pin.diagnosis.log_diagnosis") == "[]"
+
+
+def loaded(names: Sequence[str], imports: str) -> str:
+    """Which of these modules are loaded; without site, whose .pth files may import what they like."""
+    code = f"""
+import sys
+sys.path[:] = {sys.path!r}
+{imports}
+print([name for name in {list(names)!r} if name in sys.modules])
+"""
+    done = subprocess.run([sys.executable, "-I", "-S", "-c", code], capture_output=True, text=True, check=True)
+    return done.stdout.strip()

@@ -8,11 +8,14 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.interpolate import make_lsq_spline
 
 from rttrr_pin.core.arrays import Array
+
+if TYPE_CHECKING:
+    from scipy.interpolate import BSpline
 
 DEGREE = 5
 
@@ -81,14 +84,14 @@ def _spacings(t: Array) -> list[float]:
 
 def _score(t: Array, x: Array, spacing: float) -> tuple[Array, Array]:
     """The criterion of generalised cross-validation, and the standard deviation of the residual, of each column."""
-    knots = _knots(t, spacing)
-    free = len(t) - (len(knots) - DEGREE - 1)
-    counted = len(t) - COUNTED * (len(knots) - DEGREE - 1)
+    parameters = len(_knots(t, spacing)) - DEGREE - 1
+    free = len(t) - parameters
+    counted = len(t) - COUNTED * parameters
     never = np.full(x.shape[1], np.inf)
     if counted <= 0:
         return never, never
     try:
-        residual = x - make_lsq_spline(t, x, knots, DEGREE, method=METHOD)(t)
+        residual = x - _spline(t, x, spacing)(t)
     except (ValueError, np.linalg.LinAlgError):  # too few samples between two knots
         return never, never
     squares = (residual**2).sum(axis=0)
@@ -96,8 +99,14 @@ def _score(t: Array, x: Array, spacing: float) -> tuple[Array, Array]:
 
 
 def _derivatives(t: Array, x: Array, spacing: float) -> list[Array]:
-    spline = make_lsq_spline(t, x, _knots(t, spacing), DEGREE, method=METHOD)
+    spline = _spline(t, x, spacing)
     return [np.asarray(spline.derivative(order)(t) if order else spline(t)) for order in range(3)]
+
+
+def _spline(t: Array, x: Array, spacing: float) -> BSpline:
+    from scipy.interpolate import make_lsq_spline  # half a second, which tables of results do not need
+
+    return make_lsq_spline(t, x, _knots(t, spacing), DEGREE, method=METHOD)
 
 
 def _knots(t: Array, spacing: float) -> Array:
