@@ -18,6 +18,7 @@ __all__ = [
     "MissingJointError",
     "ModelMismatchError",
     "NumberError",
+    "RefusalError",
     "RttrrError",
     "ShapeError",
     "UnknownNameError",
@@ -167,6 +168,10 @@ class EquationError(RttrrError):
 
 class ImplementationError(RttrrError):
     """A program to compare with is missing, or cannot take this robot."""
+
+
+class RefusalError(ImplementationError):
+    """A program says that it does not take this robot, or a payload: it fails at nothing that it offers."""
 
 
 class ModelMismatchError(ImplementationError):

@@ -7,14 +7,27 @@ from typing import TYPE_CHECKING
 from rttrr_pin.lazy import lazy
 
 if TYPE_CHECKING:
+    from rttrr_pin.conformance.judge import judge as judge
     from rttrr_pin.conformance.levels import LEVELS as LEVELS
     from rttrr_pin.conformance.levels import Case as Case
     from rttrr_pin.conformance.levels import Level as Level
     from rttrr_pin.conformance.levels import cases as cases
+    from rttrr_pin.conformance.results import Conformance as Conformance
+    from rttrr_pin.conformance.results import LevelResult as LevelResult
+    from rttrr_pin.conformance.results import QuantityResult as QuantityResult
+    from rttrr_pin.conformance.results import Standing as Standing
+    from rttrr_pin.conformance.results import Value as Value
     from rttrr_pin.conformance.robots import level_robot as level_robot
     from rttrr_pin.conformance.robots import level_robots as level_robots
+    from rttrr_pin.conformance.run import conform as conform
 
 __getattr__, __dir__, __all__ = lazy(
     __name__,
-    {"levels": ("LEVELS", "Case", "Level", "cases"), "robots": ("level_robot", "level_robots")},
+    {
+        "judge": ("judge",),
+        "levels": ("LEVELS", "Case", "Level", "cases"),
+        "results": ("Conformance", "LevelResult", "QuantityResult", "Standing", "Value"),
+        "robots": ("level_robot", "level_robots"),
+        "run": ("conform",),
+    },
 )

@@ -14,14 +14,14 @@ Three rules, from most to least that is known of a program:
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from rttrr_pin.core.algebra import IDENTITY, ZERO, Vector
 from rttrr_pin.core.arrays import Array, norm
-from rttrr_pin.core.dynamics import bodies, joint_states
+from rttrr_pin.core.dynamics import bodies, generalised_forces, joint_effects, joint_states
 from rttrr_pin.core.joints.base import Body
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.scalars import EPS, FLOAT, UNDERFLOW
@@ -34,6 +34,43 @@ HANDOVER = 4 * EPS
 
 OPERATIONS = 8
 """Roundings of each term at each level of the tree: a change of frame, a vector product, sums."""
+
+PARAMETERS = 4
+"""What it takes beside that, where the numbers of the robot are rounded to single precision too: a rotation, a position
+or an axis at each level, and mass, centre and tensor of the link that the term is of."""
+
+
+@dataclass(frozen=True, slots=True)
+class Precision:
+    """The numbers that a program computes in.
+
+    Attributes:
+        name: of the type.
+        eps: the distance from 1 to the next number.
+        underflow: absolute, in any unit: what products lose that fall below the normal numbers.
+        operations: roundings of each term at each level of the tree, in eps.
+    """
+
+    name: str
+    eps: float
+    underflow: float
+    operations: int = OPERATIONS + PARAMETERS
+
+    @classmethod
+    def of(cls, type: np.dtype[Any]) -> Precision:
+        """That of a floating-point type that is shorter than float64."""
+        numbers = np.finfo(type)
+        return cls(type.name, float(numbers.eps), float(numbers.smallest_normal) * LOST)
+
+
+LOST = 2.0**40
+"""How many products of a robot's recursion may fall below the normal numbers, times what multiplies them afterwards."""
+
+DOUBLE = Precision("float64", EPS, UNDERFLOW, OPERATIONS)
+"""Whose numbers are those of the model."""
+
+SINGLE = Precision.of(np.dtype(np.float32))
+"""Whose numbers are those of the model rounded."""
 
 SIZES = replace(FLOAT, number=lambda value, error: abs(value))
 """Floats, of which numbers of the model count in absolute value."""
@@ -98,14 +135,29 @@ def of_other_numbers(batch: Batch, built: Model) -> dict[str, Array]:
     return {key: x if key == "tau" else norm(x) for key, x in apart.items()}
 
 
-def default_allowance(batch: Batch) -> dict[str, Array]:
-    """The allowance of a program of which nothing is known: eps for all terms, at each level of the tree."""
+def default_allowance(batch: Batch, precision: Precision = DOUBLE) -> dict[str, Array]:
+    """The allowance of a program of which nothing is known: eps for all terms, at each level of the tree.
+
+    In single precision the same terms are rounded, 2^29 times as much. To them come the numbers of the robot, which are
+    rounded before anything is computed: that changes each term relatively, as one more operation on it would, and is
+    `PARAMETERS` of them. Coordinates, rates, accelerations and payloads are taken as they are: where single precision
+    does not hold them, their rounding is the caller's.
+    """
     model = batch.model
     depth = levels([joint.parent for joint in model.joints]).max(initial=0.0)
-    each = OPERATIONS * EPS * (1 + depth)
-    wide = {key: each * size + UNDERFLOW for key, size in sizes(batch).items()}
-    own = np.abs(batch.recursion[0].tau_joint)
-    return {"tau": _of_carriers(model, wide) + HANDOVER * own} | wide
+    each = precision.operations * precision.eps * (1 + depth)
+    wide = {key: each * size + precision.underflow for key, size in sizes(batch).items()}
+    own = precision.operations * precision.eps * _sizes_of_tau_joint(batch)
+    return {"tau": _of_carriers(model, wide) + own} | wide
+
+
+def _sizes_of_tau_joint(batch: Batch) -> Array:
+    """What armature, damping and friction add up to where none is against another, (N, nv)."""
+    model = batch.model
+    states = joint_states(model, SIZES, *(list(np.abs(x).T) for x in (batch.q, batch.v, batch.a)))
+    own = [joint_effects(joint.effects, state, SIZES) for joint, state in zip(model.joints, states, strict=True)]
+    columns = [np.broadcast_to(x, len(batch)) for x in generalised_forces(model, SIZES, own)]
+    return np.stack(columns, axis=1) if columns else np.zeros((len(batch), 0))
 
 
 def of_printed(batch: Batch, halves: Mapping[str, Array]) -> dict[str, Array]:

@@ -9,10 +9,9 @@ import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
-from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import QUANTITIES
-from rttrr_pin.errors import ImplementationError, RttrrError, ShapeError, told
-from rttrr_pin.implementations.allowance import default_allowance
+from rttrr_pin.errors import ImplementationError, RefusalError, RttrrError, ShapeError, told
+from rttrr_pin.implementations.allowance import SINGLE, Precision, default_allowance
 from rttrr_pin.implementations.protocol import Batch, Evaluation, shape_of
 from rttrr_pin.implementations.text_results import quantities_of, trial_states
 
@@ -37,14 +36,20 @@ class Function:
 
     version = ""
 
-    def __init__(self, function: Callable[..., Any], model: Model) -> None:
+    def __init__(self, function: Callable[..., Any], model: Model, name: str = "") -> None:
         """Try the function on states at rest and in motion.
 
+        Args:
+            function: f(q, v, a).
+            model: the robot.
+            name: what it is called; without it, its own name.
+
         Raises:
-            ImplementationError: it raised an exception, or returned nothing of use.
+            RefusalError: it raised NotImplementedError.
+            ImplementationError: it raised another exception, or returned nothing of use.
             ShapeError: what it returned has not one number for each joint, or three for each link.
         """
-        self.name = str(getattr(function, "__name__", type(function).__name__)).replace("<lambda>", "function")
+        self.name = name or name_of(function)
         self.function = function
         self.model = model
         self.quantities: tuple[str, ...] = ()
@@ -72,7 +77,7 @@ class Function:
     def evaluate(self, batch: Batch) -> Evaluation:
         """What the function returns, state by state or at once."""
         if batch.loads:
-            raise ImplementationError(
+            raise RefusalError(
                 f"{self.name} takes q, v, a and no payload: pass payload=None, or write an Implementation",
                 options={"pass payload=None": "leave --payload out"},
             )
@@ -89,13 +94,14 @@ class Function:
         """The default, for numbers of the type that is returned."""
         if self.type == np.float64:
             return None
-        scale = float(np.finfo(self.type).eps) / EPS
-        return {key: scale * x for key, x in default_allowance(batch).items()}
+        return default_allowance(batch, SINGLE if self.type == np.float32 else Precision.of(self.type))
 
     def _call(self, state: int, q: Array, v: Array, a: Array) -> Any:
         try:
             with np.errstate():  # whatever it sets
                 return self.function(q.copy(), v.copy(), a.copy())
+        except NotImplementedError as error:
+            raise RefusalError(f"{self.name} does not offer this: {told(error)}") from error
         except (Exception, SystemExit) as error:  # the user's own code runs here
             raise ImplementationError(f"{self.name} raised {told(error, f' at state {state}')}") from error
 
@@ -129,6 +135,11 @@ class Function:
                 wanted=str(wanted),
             )
         return array.reshape(wanted)
+
+
+def name_of(function: object) -> str:
+    """What a function is called."""
+    return str(getattr(function, "__name__", type(function).__name__)).replace("<lambda>", "function")
 
 
 def _same(together: Mapping[str, Array], alone: Mapping[str, Array]) -> bool:

@@ -24,7 +24,7 @@ from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints.base import JointState
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.scalars import EPS, FLOAT
-from rttrr_pin.errors import ImplementationError
+from rttrr_pin.errors import RefusalError
 from rttrr_pin.implementations.protocol import Batch
 
 TOLERANCE = 64 * EPS
@@ -134,10 +134,10 @@ def urdf_of(model: Model, program: str) -> str:
     """The text that a program builds its own model from.
 
     Raises:
-        ImplementationError: the model was made from numbers.
+        RefusalError: the model was made from numbers.
     """
     if not model.urdf:
-        raise ImplementationError(
+        raise RefusalError(
             f"robot {model.name!r} was made from numbers, and {program} builds from a URDF: load it from a file"
         )
     return model.urdf

@@ -29,7 +29,7 @@ from rttrr_pin.core.arrays import Array, norm
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints import CONTINUOUS, FIXED, FLOATING, PLANAR, PRISMATIC, REVOLUTE
 from rttrr_pin.core.model import Link, Model
-from rttrr_pin.errors import ImplementationError, ModelMismatchError
+from rttrr_pin.errors import ModelMismatchError, RefusalError
 from rttrr_pin.implementations import library
 
 PREFIX = "link "
@@ -69,7 +69,7 @@ def build(model: Model) -> Any:
     """MuJoCo's compiled model: body 1 is the root of the file, then every other link.
 
     Raises:
-        ImplementationError: MuJoCo refuses the file.
+        RefusalError: MuJoCo refuses the file.
         ModelMismatchError: it read something else than we did.
     """
     with without_log():
@@ -82,7 +82,7 @@ def build(model: Model) -> Any:
             _prepare(spec, model, bodies)
             compiled = spec.compile()
         except ValueError as error:
-            raise ImplementationError(f"MuJoCo refuses the URDF of {model.name!r}: {str(error).strip()}") from error
+            raise RefusalError(f"MuJoCo refuses the URDF of {model.name!r}: {str(error).strip()}") from error
     for name, inertial in inertials.items():
         _write(compiled, compiled.body(name).id, *inertial)
     compiled.opt.gravity[:] = model.gravity

@@ -38,7 +38,7 @@ from rttrr_pin.core.joints import CONTINUOUS, PLANAR
 from rttrr_pin.core.model import UNIVERSE, Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import QUANTITIES
-from rttrr_pin.errors import ImplementationError, ModelMismatchError
+from rttrr_pin.errors import ImplementationError, ModelMismatchError, RefusalError
 from rttrr_pin.implementations.allowance import of_library, of_other_numbers, sum_inwards
 from rttrr_pin.implementations.library import (
     LibraryJoint,
@@ -77,20 +77,18 @@ class Pinocchio:
         """Build Pinocchio's model, and hold it against what the file says.
 
         Raises:
-            ImplementationError: the model has no URDF text, or Pinocchio refuses it.
+            RefusalError: the model has no URDF text, or Pinocchio refuses it.
             ModelMismatchError: Pinocchio built something else.
         """
         urdf = urdf_of(model, "Pinocchio")
         _check_memory(sum(joint.nv for joint in model.joints))
         if any(joint.name == UNIVERSE for joint in model.joints):
-            raise ImplementationError(
-                f"joint {UNIVERSE!r} has a name that Pinocchio keeps for itself: give it another one"
-            )
+            raise RefusalError(f"joint {UNIVERSE!r} has a name that Pinocchio keeps for itself: give it another one")
         try:
             root = (pin.JointModelFreeFlyer(), model.joints[0].name) if model.floating else ()
             self.pin_model, said = built_model(urdf, *root)
         except ImplementationError as error:
-            raise ImplementationError(f"Pinocchio refuses the URDF of {model.name!r}: {error}") from error
+            raise RefusalError(f"Pinocchio refuses the URDF of {model.name!r}: {error}") from error
         assembly = Assembly(model, self.pin_model)
         if lines := differences(assembly):
             raise ModelMismatchError("Pinocchio", lines, said)
@@ -251,11 +249,11 @@ def _check_memory(nv: int) -> None:
     """Say before it is tried that Pinocchio's data does not fit in memory.
 
     Raises:
-        ImplementationError: it does not.
+        RefusalError: it does not.
     """
     needed, there = TENSORS * 8 * nv**3, os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     if needed > there:
-        raise ImplementationError(
+        raise RefusalError(
             f"Pinocchio's data grows with the cube of the degrees of freedom: {needed / 1e9:,.0f} GB for the {nv:,} of "
             f"this robot, on a machine with {there / 1e9:,.0f} GB; pass reference='recursion' instead",
             {"reference='recursion'": "--reference recursion"},

@@ -11,18 +11,23 @@ import math
 import os
 import select
 import shlex
+import shutil
 import subprocess
+import tempfile
 import time
 import tty
 import weakref
 from collections.abc import Iterator, Sequence
 from contextlib import suppress
+from dataclasses import asdict
+from pathlib import Path
 
 import numpy as np
 
+from rttrr_pin.core.joint import JointEffects
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.wrench import QUANTITIES
-from rttrr_pin.errors import ImplementationError, shortened
+from rttrr_pin.errors import ImplementationError, RefusalError, shortened
 from rttrr_pin.implementations.allowance import of_printed
 from rttrr_pin.implementations.protocol import Batch, Evaluation, shape_of
 from rttrr_pin.implementations.text_results import (
@@ -49,6 +54,11 @@ PATIENCE = 0.5
 """Seconds that a program has to leave once its input has ended."""
 
 
+PLACES = ("{urdf}", "{base}", "{gravity}", "{effects}")
+"""What stands in a command for the robot: the path of its URDF; fixed or floating; its gravity field, `x,y,z` [m/s^2];
+armature, damping and friction of the joints that have any, a JSON object by joint."""
+
+
 class Program:
     """A command that answers each state with a line.
 
@@ -65,20 +75,26 @@ class Program:
         """Start the program, and try it on three states.
 
         Args:
-            command: as a shell would split it, though none runs; or the words.
+            command: as a shell would split it, though none runs; or the words. `PLACES` are filled in.
             model: the robot.
             seconds: how long it may take for a state.
 
         Raises:
+            RefusalError: it replies with an error, in its own words, or needs a URDF where the robot has none.
             ImplementationError: it cannot be started, dies, hangs, or replies with what is no result.
         """
         try:
             self.words = shlex.split(command) if isinstance(command, str) else list(command)
         except ValueError as error:
             raise ImplementationError(f"{command!r} is no command: {error}") from None
-        self.name = shortened(shlex.join(self.words))
+        self.name = shortened(" ".join(word if word in PLACES else shlex.quote(word) for word in self.words))
         self.model, self.seconds = model, seconds
         self._child: _Child | None = None
+        self._filled = self.words
+        if any(place in word for word in self.words for place in PLACES):
+            folder = tempfile.mkdtemp(prefix="rttrr-pin-")
+            weakref.finalize(self, shutil.rmtree, folder, ignore_errors=True)
+            self._filled = _filled(self.words, model, Path(folder))
         self._columns = columns_of(model)
         self.quantities: tuple[str, ...] = ()
         trial = Batch(model, *trial_states(model))
@@ -111,7 +127,7 @@ class Program:
         try:
             start = self.seconds * (START if self._child is None else 1)
             if self._child is None:
-                self._child = _Child(self.words)
+                self._child = _Child(self._filled)
                 weakref.finalize(self, self._child.end, PATIENCE)
             for line in self._child.ask([request(batch, k) for k in range(len(batch))], self.seconds, start):
                 replies.append(self._results(line, f"{self.name}, state {batch.first + len(replies)}"))
@@ -122,7 +138,8 @@ class Program:
                 raise
             at = "" if not self.quantities else f" at state {batch.first + len(replies)}"
             message = f"{self.name} {error}{at}" if isinstance(error, _ReplyError) else str(error)
-            raise ImplementationError(message + (f"\nits stderr ends:\n{last_words}" if last_words else "")) from None
+            kind = RefusalError if isinstance(error, _Refusal) else ImplementationError
+            raise kind(message + (f"\nits stderr ends:\n{last_words}" if last_words else "")) from None
         return replies
 
     def _results(self, line: str, where: str) -> dict[str, list[str]]:
@@ -132,7 +149,7 @@ class Program:
             raise _ReplyError(f"wrote what is no reply: {error}; it may write anything else to stderr") from None
         if isinstance(reply, dict) and "error" in reply:
             text = reply["error"] if isinstance(reply["error"], str) else "no text, where one is expected"
-            raise _ReplyError(f"replied with an error: {shortened(text)}")
+            raise _Refusal(f"replied with an error: {shortened(text)}")
         parts = quantities_of(reply, self.name)
         if self.quantities and set(parts) != set(self.quantities):
             raise _ReplyError(f"replied with {', '.join(parts)}, and with {', '.join(self.quantities)} before")
@@ -141,6 +158,32 @@ class Program:
 
 class _ReplyError(Exception):
     """No result was had of a program; the message continues a sentence that begins with its name."""
+
+
+class _Refusal(_ReplyError):
+    """The program said that it does not take the robot, or the state."""
+
+
+def _filled(words: Sequence[str], model: Model, folder: Path) -> list[str]:
+    """The words of a command with the robot in them; its URDF is written to a folder."""
+    whole = " ".join(words)
+    if "{urdf}" in whole and not model.urdf:
+        raise RefusalError(f"robot {model.name!r} was made from numbers, and {whole} takes a URDF: load it from a file")
+    path = folder / "robot.urdf"
+    path.write_text(model.urdf)
+    effects = {own.name: asdict(own.effects) for own in model.joints if own.effects != JointEffects()}
+    values = (
+        str(path),
+        "floating" if model.floating else "fixed",
+        ",".join(map(repr, model.gravity.tolist())),
+        json.dumps(effects),
+    )
+    filled = []
+    for word in words:
+        for place, value in zip(PLACES, values, strict=True):
+            word = word.replace(place, value)
+        filled.append(word)
+    return filled
 
 
 class _Child:

@@ -7,6 +7,7 @@ when one of its kind is asked for.
 
 from __future__ import annotations
 
+import inspect
 import os
 import pkgutil
 import shlex
@@ -20,7 +21,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from rttrr_pin.core.model import Model
-from rttrr_pin.errors import ImplementationError, InputError, RttrrError, UnknownNameError, told
+from rttrr_pin.errors import ImplementationError, InputError, RefusalError, RttrrError, UnknownNameError, told
 from rttrr_pin.implementations.protocol import Implementation
 
 if TYPE_CHECKING:
@@ -55,21 +56,23 @@ def make_implementation(source: Source, model: Model) -> Implementation:
 
     Args:
         source: a name (`"kernel"`, `"pinocchio"`, ...); an `Implementation`; a function f(q, v, a) of one state or a
-            batch; the path of a table of results (.csv, .parquet, .jsonl); `"my_module:my_function"`; or the command
-            line of a program that reads states and writes results as JSON lines, such as `"./my_id"`.
+            batch; a class or a function of one argument, the `Model`, that makes either; the path of a table of results
+            (.csv, .parquet, .jsonl); `"my_module:my_function"`; or the command line of a program that reads states and
+            writes results as JSON lines, such as `"./my_id"` or `"./my_id {urdf}"` (`program.PLACES`).
         model: the robot.
 
     Raises:
         UnknownNameError: it is none of these.
-        ImplementationError: its library is not installed, or cannot take the robot.
+        RefusalError: it does not take the robot.
+        ImplementationError: its library is not installed, or it fails.
         InputError: it is of another type.
     """
     if isinstance(source, Implementation) and not isinstance(source, type):
         return source
     if callable(source):
-        from rttrr_pin.implementations.function import Function
+        from rttrr_pin.implementations.function import Function, name_of
 
-        return Function(source, model)
+        return _made(source, name_of(source), model) if _makes(source) else Function(source, model)
     if not isinstance(source, str | os.PathLike):
         raise InputError(
             f"an implementation is given as {type(source).__name__}: pass a name, a function f(q, v, a), "
@@ -81,10 +84,9 @@ def make_implementation(source: Source, model: Model) -> Implementation:
     for point in _registered():
         if point.name == text:
             return _of_package(point, model)
-    from rttrr_pin.implementations.table import Table
-    from rttrr_pin.implementations.table_files import READERS
+    if is_table(text):
+        from rttrr_pin.implementations.table import Table
 
-    if Path(text).suffix.lower() in READERS and (Path(text).is_file() or not _is_command(text)):
         return Table(Path(text), model)
     if _is_command(text):
         from rttrr_pin.implementations.program import Program
@@ -94,6 +96,70 @@ def make_implementation(source: Source, model: Model) -> Implementation:
     if colon and all(part.isidentifier() for part in (*module.split("."), *attribute.split("."))):
         return make_implementation(_of_module(text), model)
     raise UnknownNameError("implementation", text, names(), "a program needs its path, such as ./my_id")
+
+
+def for_one_robot(source: Source) -> bool:
+    """Whether it is bound to a robot: a function f(q, v, a), a table, a command that is not told which robot it is."""
+    if isinstance(source, Implementation) and not isinstance(source, type):
+        return False
+    if callable(source):
+        return not _makes(source)
+    text = os.fspath(source)
+    if text in names():
+        return False
+    if is_table(text):
+        return True
+    if _is_command(text):
+        from rttrr_pin.implementations.program import PLACES
+
+        return not any(place in text for place in PLACES)
+    return ":" not in text or for_one_robot(_of_module(text))
+
+
+def is_table(source: Source) -> bool:
+    """Whether it is the path of a table of results."""
+    from rttrr_pin.implementations.table_files import READERS
+
+    if callable(source) or not isinstance(source, str | os.PathLike):
+        return False
+    text = os.fspath(source)
+    return Path(text).suffix.lower() in READERS and (Path(text).is_file() or not _is_command(text))
+
+
+def _makes(source: Callable[..., Any]) -> bool:
+    """Whether it is a class, or a function that takes one argument, and so is asked for an implementation of a robot."""
+    if isinstance(source, type):
+        return True
+    try:
+        parameters = inspect.signature(source).parameters.values()
+    except (TypeError, ValueError):  # of a function in C nothing is known
+        return False
+    positional = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    needed = [own for own in parameters if own.default is own.empty and own.kind in positional]
+    return len(needed) == 1 and not any(own.kind is own.VAR_POSITIONAL for own in parameters)
+
+
+def _made(factory: Callable[..., Any], name: str, model: Model) -> Implementation:
+    """What a class or a function of the user's, or of another package, makes for a robot."""
+    from rttrr_pin.implementations.function import Function
+
+    try:
+        with np.errstate():  # whatever it sets
+            made = factory(model)
+    except RttrrError:
+        raise
+    except NotImplementedError as error:
+        raise RefusalError(f"{name} does not take robot {model.name!r}: {told(error)}") from error
+    except (Exception, SystemExit) as error:
+        raise ImplementationError(f"implementation {name} cannot be made: {told(error)}") from error
+    if isinstance(made, Implementation) and not isinstance(made, type):
+        return made
+    if callable(made):
+        return Function(made, model, name)
+    raise ImplementationError(
+        f"implementation {name} is a {type(made).__name__}: "
+        "expected one with name, version, quantities and evaluate, or a function f(q, v, a)"
+    )
 
 
 def _is_command(text: str) -> bool:
@@ -127,20 +193,12 @@ def _registered() -> EntryPoints:
 
 def _of_package(point: EntryPoint, model: Model) -> Implementation:
     """What another package registered."""
+    name = f"{point.name!r} ({point.value})"
     try:
-        implementation: Implementation = point.load()(model)
-    except RttrrError:
-        raise
+        factory = point.load()
     except (Exception, SystemExit) as error:
-        raise ImplementationError(
-            f"implementation {point.name!r} ({point.value}) cannot be made: {told(error)}"
-        ) from error
-    if not isinstance(implementation, Implementation):
-        raise ImplementationError(
-            f"implementation {point.name!r} ({point.value}) is a {type(implementation).__name__}: "
-            "expected one with name, version, quantities and evaluate"
-        )
-    return implementation
+        raise ImplementationError(f"implementation {name} cannot be loaded: {told(error)}") from error
+    return _made(factory, name, model)
 
 
 def _of_module(text: str) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -18,7 +18,7 @@ from rttrr_pin.implementations import Batch, Evaluation, Implementation, make_im
 from rttrr_pin.implementations.protocol import evaluated
 from rttrr_pin.implementations.registry import Source
 from rttrr_pin.robot import Robot
-from rttrr_pin.validation.compare import Comparison, Difference, Ranking, with_allowance
+from rttrr_pin.validation.compare import Comparison, Difference, Ranking, Row, with_allowance
 from rttrr_pin.validation.sampling import Payload, Sampler
 from rttrr_pin.validation.states import States, model_of
 
@@ -116,7 +116,7 @@ class Run:
         """What each program makes of a batch, the subject first."""
         results = [with_allowance(batch, evaluated(program, batch)) for program in self.programs]
         for program, result in zip(self.programs, results, strict=True):
-            _check_overflow(batch, program, result)
+            check_bounds(batch, program, result)
         return results
 
     @QUIET
@@ -156,17 +156,25 @@ def adjudicate(batch: Batch, results: Sequence[tuple[str, Evaluation]]) -> Adjud
 
 def _assessment(batch: Batch, enclosures: Enclosures, name: str, evaluation: Evaluation) -> Assessment:
     """How far one program is off the true values of one state, quantity by quantity, in the order of the recursion."""
-    # The true value in an enclosure that is nearest to the program's: what it is off by is certain, and no more is.
-    true = nearest(enclosures, evaluation.values)
-    truth = Evaluation(true, {key: np.zeros(x.shape[:2]) for key, x in true.items()}, evaluation.tau_joint)
-    comparison = Comparison(batch.model, tuple(true))
     deviations = [
         Deviation(
             row.quantity, row.at, float(one.relative[0]), float(one.of_tolerance[0]), float(one.error[0]), row.unit
         )
-        for row, one in zip(comparison.rows, comparison.differences(batch, evaluation, truth), strict=True)
+        for row, one in off_the_truth(batch, enclosures, evaluation)
     ]
     return Assessment(name, in_order(batch.model, deviations))
+
+
+def off_the_truth(batch: Batch, enclosures: Enclosures, evaluation: Evaluation) -> Iterator[tuple[Row, Difference]]:
+    """How far a program is off the true values of some states, by quantity and place: (N,) each.
+
+    The true value in an enclosure that is nearest to the program's is taken: what it is off by is certain, and no more
+    is. The tolerance is the program's own allowance, since the truth has none.
+    """
+    true = nearest(enclosures, evaluation.values)
+    truth = Evaluation(true, {key: np.zeros(x.shape[:2]) for key, x in true.items()}, evaluation.tau_joint)
+    comparison = Comparison(batch.model, tuple(true))
+    return zip(comparison.rows, comparison.differences(batch, evaluation, truth), strict=True)
 
 
 def true_parameters(model: Model) -> Parameters:
@@ -188,7 +196,7 @@ def _check_inertia(model: Model, states: States) -> None:
         raise InputError(f"no link of robot {model.name!r}{root} has mass: nothing was compared")
 
 
-def _check_overflow(batch: Batch, program: Implementation, result: Evaluation) -> None:
+def check_bounds(batch: Batch, program: Implementation, result: Evaluation) -> None:
     """Where no bound on the rounding is finite there is no verdict; a result that alone is not finite is an error."""
     for key, allowed in (result.allowance or {}).items():
         beyond = ~np.isfinite(allowed).reshape(len(allowed), -1).all(axis=1)

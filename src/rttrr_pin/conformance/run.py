@@ -1,0 +1,151 @@
+"""A program's way through the levels."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from rttrr_pin.conformance.judge import PRECISIONS, Wanted, ask, judged, precision_of, without_numbers
+from rttrr_pin.conformance.levels import Case, cases
+from rttrr_pin.conformance.results import Conformance, LevelResult
+from rttrr_pin.core.arguments import choice
+from rttrr_pin.errors import ImplementationError, InputError, RttrrError
+from rttrr_pin.implementations import Evaluation, Implementation, label, make_implementation
+from rttrr_pin.implementations.function import Function, name_of
+from rttrr_pin.implementations.registry import Source, for_one_robot, is_table
+from rttrr_pin.robot import Robot
+from rttrr_pin.validation.run import versions
+
+if TYPE_CHECKING:
+    from rttrr_pin.implementations.allowance import Precision
+
+Progress = Callable[[int], None]
+
+Answer = Evaluation | LevelResult
+"""Numbers, or an outcome without any."""
+
+
+def conform(
+    subject: Source,
+    robots: Sequence[Robot] | None = None,
+    levels: Sequence[str] | None = None,
+    n_states: int = 32,
+    seed: int = 0,
+    precision: Wanted = "auto",
+    diagnose: bool = True,
+    progress: Progress | None = None,
+) -> Conformance:
+    """Find out how far a program gets through the levels (`LEVELS`).
+
+    Args:
+        subject: the program: all that `validate` takes but a table, which has states of its own. To be asked with
+            several robots it must be told which: a class or a function of one argument, the `Model`, that makes a
+            function f(q, v, a) or an `Implementation`; or a command with `{urdf}` in it (`program.PLACES`).
+        robots: own robots, each asked the levels that apply to it; None for the robots of the levels.
+        levels: ids of those that are wanted; None for all.
+        n_states: states of each case.
+        seed: of the states.
+        precision: "float64" or "float32", in whose rounding it is judged; "auto" finds it out from its numbers.
+        diagnose: whether to say why a level fails.
+        progress: called with the number of cases done.
+
+    Returns:
+        The outcome of each case, and the level reached.
+
+    Raises:
+        InputError: an argument cannot be used, or the program is made for one robot and several are asked.
+        UnknownNameError: there is no such program, or no such level.
+        ImplementationError: it can be made for none of the robots, or offers none of the levels.
+    """
+    begin = time.perf_counter()
+    choice("precision", precision, "auto", *PRECISIONS)
+    _check_subject(subject, robots)
+    asked = cases(robots, levels, n_states, seed)
+    programs = _programs(subject, asked, precision)
+    answers = [_answer(case, programs[id(case.robot)]) for case in asked]
+    numbers = [own.values for own in answers if isinstance(own, Evaluation)]
+    _check_offered(asked, programs, answers)
+    own = PRECISIONS[precision] if precision != "auto" else precision_of(numbers)
+    results = []
+    for case, answer in zip(asked, answers, strict=True):
+        results.append(_judged(case, programs[id(case.robot)], answer, own))
+        if progress is not None:
+            progress(len(results))
+    made = [one for one in programs.values() if isinstance(one, Implementation)]
+    return Conformance(
+        subject=_label(subject, made[0]),
+        results=tuple(results),
+        precision=own.name,
+        n_states=len(asked[0].batch),
+        seed=int(seed),
+        notes=tuple(dict.fromkeys(note for one in made for note in getattr(one, "notes", ()))),
+        seconds=time.perf_counter() - begin,
+        versions=versions(made[:1]),
+    )
+
+
+def _check_subject(subject: Source, robots: Sequence[Robot] | None) -> None:
+    """What cannot be asked states of ours, or not with several robots."""
+    if is_table(subject):
+        raise InputError(
+            f"{subject} is a table, with states of its own, and levels have theirs: "
+            "name a program or a function, or ask `validate` and `diagnose` about the table"
+        )
+    if for_one_robot(subject) and (robots is None or len(robots) != 1):
+        what = f"{len(robots)} are named" if robots is not None else "levels have several"
+        raise InputError(
+            f"{_named(subject)} is made for one robot, and {what}: name the robot, conform({_named(subject)}, [robot]), "
+            "or one that is told which: a function of the model, or a command with {urdf} in it",
+            {f"conform({_named(subject)}, [robot])": "rttrr-pin conform SUBJECT ROBOT"},
+        )
+
+
+def _named(subject: Source) -> str:
+    return name_of(subject) if callable(subject) else str(subject)
+
+
+def _programs(subject: Source, asked: Sequence[Case], precision: Wanted) -> dict[int, Implementation | RttrrError]:
+    """The program, made for each robot; or why it cannot be."""
+    made: dict[int, Implementation | RttrrError] = {}
+    for case in asked:
+        if id(case.robot) not in made:
+            try:
+                program = make_implementation(subject, case.robot.model)
+                if isinstance(program, Function) and precision != "auto":
+                    program.type = np.dtype(np.float64)  # judged as it is wanted, whatever it returns
+                made[id(case.robot)] = program
+            except RttrrError as error:
+                made[id(case.robot)] = error
+    errors = [own for own in made.values() if isinstance(own, RttrrError)]
+    if len(errors) == len(made):
+        raise errors[0]
+    return made
+
+
+def _answer(case: Case, program: Implementation | RttrrError) -> Answer:
+    return without_numbers(case, program) if isinstance(program, RttrrError) else ask(case, program)
+
+
+def _check_offered(
+    asked: Sequence[Case], programs: dict[int, Implementation | RttrrError], answers: Sequence[Answer]
+) -> None:
+    """A program that refuses all is no judged one."""
+    refused = [own for own in answers if isinstance(own, LevelResult) and own.outcome == "not offered"]
+    if len(refused) == len(asked):
+        raise ImplementationError(f"none of what was asked is offered; {refused[0].id}: {refused[0].message}")
+
+
+def _judged(case: Case, program: Implementation | RttrrError, answer: Answer, precision: Precision) -> LevelResult:
+    if isinstance(answer, LevelResult) or isinstance(program, RttrrError):
+        assert isinstance(answer, LevelResult)
+        return answer
+    return judged(case, program, answer, precision)
+
+
+def _label(subject: Source, program: Implementation) -> str:
+    """Name and version; of a command as it was typed."""
+    return label(program) if not isinstance(subject, str | os.PathLike) or program.version else str(subject)
