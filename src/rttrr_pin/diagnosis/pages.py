@@ -127,7 +127,7 @@ def comparison_page(result: Comparison) -> Page:
         tone="agrees" if result.passed else "unexplained",
         sentence=rest,
         tables=(*_effects(result), *_torques(result)),
-        lists=points("Also", remarks(result, full=True)),
+        lists=(*points("Why", result.reasons), *points("Also", remarks(result, full=True))),
     )
 
 

@@ -22,6 +22,7 @@ from rttrr_pin.diagnosis.descriptions.effects_of import (
     torques_and_bound,
 )
 from rttrr_pin.diagnosis.descriptions.matched import Matched, matched, notes_of
+from rttrr_pin.diagnosis.descriptions.reasons import reasons
 from rttrr_pin.diagnosis.engine.evidence import rms
 from rttrr_pin.errors import InputError, listed
 from rttrr_pin.loading import load
@@ -68,6 +69,7 @@ class Comparison(Summarised):
         rounding: those that printed digits explain, the largest first; they are one note, and not in `effects`.
         rounding_effect: what they change together; None where there are none.
         joints: torques by degree of freedom, as the first names them.
+        reasons: why links differ, where one description is what a known slip makes of the other.
         notes: names, order, directions, frames, merged links.
         n_states: how many states.
         seed: of the generator.
@@ -82,6 +84,7 @@ class Comparison(Summarised):
     rounding: tuple[Difference, ...]
     rounding_effect: Effect | None
     joints: Mapping[str, JointTorque]
+    reasons: tuple[str, ...]
     notes: tuple[str, ...]
     n_states: int
     seed: int
@@ -147,7 +150,7 @@ class Comparison(Summarised):
         """Everything as data for JSON."""
         data: dict[str, Any] = {
             "schema": 1,
-            **{name: getattr(self, name) for name in ("passed", "robots", "only_a", "only_b", "notes")},
+            **{name: getattr(self, name) for name in ("passed", "robots", "only_a", "only_b", "reasons", "notes")},
             "pairs": [list(pair) for pair in self.pairs],
             "differences": [own.to_dict() for own in self.effects],
             "rounding": [own.to_dict() for own in self.rounding],
@@ -221,6 +224,7 @@ def compare_robots(
         rounding=tuple(replace(own, change=None) for own in printed),
         rounding_effect=together,
         joints=_joints(both, torques),
+        reasons=tuple(reasons(first, second, both.links)) if effects else (),
         notes=tuple(notes_of(both)),
         n_states=count,
         seed=whole,

@@ -17,6 +17,9 @@ from rttrr_pin.errors import listed
 from rttrr_pin.reporting.results import counted
 from rttrr_pin.validation.report import drawn, word
 
+NARROW = 10
+"""Characters that are left for names in a narrow terminal; numbers are never cut."""
+
 MOST_ROWS = 20
 """Differences in the table; with `full` all of them."""
 
@@ -34,6 +37,8 @@ def show_comparison(result: Comparison, console: Console, full: bool = False) ->
         if len(rows) < len(result.mattering):
             console.print(Text(f"and {len(result.mattering) - len(rows)} more (--full)", "dim"))
         console.print(Text(LEGEND, "dim"), soft_wrap=True)
+    for line in result.reasons:
+        console.print(Text(f"why: {line}"), soft_wrap=True)
     if full:
         console.print(_joints(result))
     for line in remarks(result, full):
@@ -54,16 +59,32 @@ def remarks(result: Comparison, full: bool) -> tuple[str, ...]:
 
 def _table(rows: Sequence[Effect]) -> Table:
     table = Table(
-        "difference", "first", "second", "joint", "rms", "max", "share", box=SIMPLE_HEAD, padding=(0, 1, 0, 0)
+        "difference", "first", "second", "joint", "rms", "max", "share", box=SIMPLE_HEAD, padding=0
     )
     for column in table.columns[4:]:
         column.justify = "right"
+    for column in (table.columns[0], table.columns[3]):
+        column.overflow, column.min_width = "fold", NARROW
+    for column in (*table.columns[1:3], *table.columns[4:]):
+        column.no_wrap = True
     for own in rows:
-        x, y = values_of(own.difference)
         joint = str(own.joint)
         numbers = (f"{own.rms[joint]:.3g}", f"{own.largest[joint]:.3g}", percent(own.share[joint]))
-        table.add_row(own.difference.where, x, y, joint, *numbers)
+        (what, *values), *others = _lines(own.difference)
+        table.add_row(what, *values, joint, *numbers)
+        for line in others:
+            table.add_row(*line)
     return table
+
+
+def _lines(own: Difference) -> list[tuple[str, str, str]]:
+    """What differs, and both values; of a tensor of which several entries differ, one line for each."""
+    entries = [(name, number(x), number(y)) for name, x, y in own.entries]
+    if not entries:
+        return [(own.where, short(own.a), short(own.b))]
+    if len(entries) == 1:
+        return [(own.where, *entries[0][1:])]
+    return [(f"{own.kind} of {own.link}", "", ""), *((f"  {name}", x, y) for name, x, y in entries)]
 
 
 def _joints(result: Comparison) -> Table:

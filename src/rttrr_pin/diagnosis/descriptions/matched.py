@@ -51,6 +51,14 @@ class Matched:
         return len(self.only_a) + len(self.only_b)
 
     @property
+    def links(self) -> list[tuple[str, str]]:
+        """Names of the links that are one, first and second: those of joints that are paired, and those of one name."""
+        bodies = [(own.name, self.tree_b.bodies[j].name) for own, j in zip(self.a.bodies, _partners(self), strict=True)]
+        first, second = ({pair[k] for pair in bodies} for k in (0, 1))
+        alike = [name for name in self.model_a.link_names if name in self.model_b.link_names]
+        return [*bodies, *((name, name) for name in alike if name not in first and name not in second)]
+
+    @property
     def unlike(self) -> int:
         """How much differs: numbers that may matter, and, thrice, joints without a counterpart."""
         return sum(own.change is not None and not own.rounding for own in self.differences) + 3 * self.alone
@@ -107,8 +115,7 @@ def notes_of(x: Matched) -> list[str]:
             notes.append(f"only {what} has joints that move: {listed(only)}; they stand still at 0 here")
     if renamed := [f"{p} is {q}" for p, q in x.pairs if p != q]:
         notes.append(f"joints have other names in the second: {listed(renamed)}")
-    links = [(p.name, x.tree_b.bodies[j].name) for p, j in zip(x.a.bodies, _partners(x), strict=True)]
-    if renamed := [f"{p} is {q}" for p, q in links if p != q]:
+    if renamed := [f"{p} is {q}" for p, q in x.links if p != q]:
         notes.append(f"links have other names in the second: {listed(renamed)}")
     order = [j for j in _partners(x) if x.tree_b.bodies[j].joint.independent]
     if order != sorted(order):
