@@ -62,6 +62,22 @@ def test_tables_are_judged_at_their_digits(
     assert not validate(pendulum(), swings(tmp_path, state, result, error), "recursion").passed
 
 
+@pytest.mark.parametrize(("form", "told"), [("%.1f", True), ("%.3f", False), ("%.17g", False)])
+def test_torques_without_a_digit_are_told(tmp_path: Path, form: str, told: bool) -> None:
+    """The fourth joint of the arm takes some hundredths of 1 N m: at one decimal nothing of it is left, right or wrong."""
+    robot = rttrr_pin.load("rttrr")
+    q, v, a = (0.1 * x for x in np.random.default_rng(4).uniform(-1, 1, (3, 20, 5)))
+    tau = robot.inverse_dynamics(q, v, a).tau
+    names = column_names(robot.model)
+    rows = [",".join(name for key in ("q", "v", "a", "tau") for name in names[key])]
+    rows += [
+        ",".join([*(f"{x!r}" for x in row[:15]), *(form % x for x in row[15:])])
+        for row in np.hstack([q, v, a, tau]).tolist()
+    ]
+    table = Table(written(tmp_path, "\n".join(rows)), robot.model)
+    assert ("tau of joint_4 is nowhere printed as more than 0.05: no more is judged" in table.notes) == told
+
+
 def test_states_printed_to_few_digits_are_exact_where_results_have_all(tmp_path: Path) -> None:
     rows = "".join(f"{q},0,1,{moment(np.float64(q), 0, 1)!r}\n" for q in (0.5, 1.25, -2.0))  # type: ignore[arg-type]
     path = written(tmp_path, HEADER + rows.replace("np.float64(", "").replace(")", ""))

@@ -47,7 +47,7 @@ class Table:
         name: the file's.
         quantities: those that it has columns of.
         digits: the significant digits that it is judged at; None where it was printed to all that float64 has.
-        notes: the same as a sentence; none where all digits are there.
+        notes: the same as a sentence, and driving forces of which no digit is left; none where all digits are there.
     """
 
     version = ""
@@ -75,12 +75,23 @@ class Table:
         halves = [*(self._halves[key] for key in STATE), *(half for _, half in self._payloads)]
         self._states_rounded = any(half.any() for half in halves)
         self._values = {key: x for key, (x, _) in parsed.items()}
+        self.notes += self._without_digits()
         if self._halves["q"].any():
             _normalise(model, self._values["q"], self._halves["q"])
         try:
             self._values |= {key: coordinates(key, self._values[key], model.moving) for key in STATE}
         except InputError as error:
             raise InputError(f"{self.name}: {error}") from error
+
+    def _without_digits(self) -> tuple[str, ...]:
+        """Which driving forces are nowhere larger than what printing left out, so that any small ones would agree."""
+        if "tau" not in self.quantities:
+            return ()
+        x, halves = np.abs(self._values["tau"]), self._halves["tau"]
+        empty = ((halves > 0.0) & (x <= halves)).all(axis=0)
+        names = [name for name, own in zip(self.model.v_names, empty, strict=True) if own]
+        limit = halves[:, empty].max(initial=0.0)
+        return (f"tau of {listed(names)} is nowhere printed as more than {limit:.3g}: no more is judged",) * bool(names)
 
     def states(self) -> Batch:
         """The states of the table, in the order of its rows, with the payloads that it has columns of.

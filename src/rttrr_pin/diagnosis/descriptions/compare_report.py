@@ -58,9 +58,7 @@ def remarks(result: Comparison, full: bool) -> tuple[str, ...]:
 
 
 def _table(rows: Sequence[Effect]) -> Table:
-    table = Table(
-        "difference", "first", "second", "joint", "rms", "max", "share", box=SIMPLE_HEAD, padding=0
-    )
+    table = Table("difference", "first", "second", "joint", "rms", "max", "share", box=SIMPLE_HEAD, padding=0)
     for column in table.columns[4:]:
         column.justify = "right"
     for column in (table.columns[0], table.columns[3]):
