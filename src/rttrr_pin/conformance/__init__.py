@@ -20,6 +20,10 @@ if TYPE_CHECKING:
     from rttrr_pin.conformance.robots import level_robot as level_robot
     from rttrr_pin.conformance.robots import level_robots as level_robots
     from rttrr_pin.conformance.run import conform as conform
+    from rttrr_pin.conformance.vector_tables import ProvenCase as ProvenCase
+    from rttrr_pin.conformance.vectors import Vectors as Vectors
+    from rttrr_pin.conformance.vectors import read_vectors as read_vectors
+    from rttrr_pin.conformance.vectors import write_vectors as write_vectors
 
 __getattr__, __dir__, __all__ = lazy(
     __name__,
@@ -29,5 +33,7 @@ __getattr__, __dir__, __all__ = lazy(
         "results": ("Conformance", "LevelResult", "QuantityResult", "Standing", "Value"),
         "robots": ("level_robot", "level_robots"),
         "run": ("conform",),
+        "vector_tables": ("ProvenCase",),
+        "vectors": ("Vectors", "read_vectors", "write_vectors"),
     },
 )
