@@ -69,11 +69,9 @@ def as_mjcf(model: Model) -> Mjcf:
     assert isinstance(document, UrdfDocument)
     for reason in _inexpressible(model):
         return Mjcf(reason=reason)
-    tensors = _true_tensors(model)
-    text = _text(model, document, tensors)
-    differences = list(_differences(text, model, document, tensors))
-    if differences:
-        return Mjcf(reason=f"it could not be proven equal to the URDF: {'; '.join(differences)}")
+    text = _text(model, document, _true_tensors(model))
+    if found := list(differences(text, model)):
+        return Mjcf(reason=f"it could not be proven equal to the URDF: {'; '.join(found)}")
     return Mjcf(text, proven=_proven(model, document))
 
 
@@ -165,9 +163,10 @@ def _inertial(body: ET.Element, inertial: UrdfInertial, tensor: list[arb]) -> No
 # The proof: the text is read anew, and each of its numbers compared with the URDF's.
 
 
-def _differences(text: str, model: Model, document: UrdfDocument, tensors: list[list[arb]]) -> Iterator[str]:
-    """What of the text is not the robot of the URDF; numbers are rationals, turned tensors intervals."""
-    root = ET.fromstring(text)
+def differences(text: str, model: Model) -> Iterator[str]:
+    """What of the text of an MJCF is not the robot; its doubles are rationals here, turned tensors intervals."""
+    document, tensors, root = model.document, _true_tensors(model), ET.fromstring(text)
+    assert isinstance(document, UrdfDocument)
     compiler = root.find("compiler")
     if compiler is None or compiler.get("angle") != "radian" or compiler.get("eulerseq") != "XYZ":
         yield "angles"

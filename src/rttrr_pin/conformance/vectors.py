@@ -96,8 +96,9 @@ class Vectors(Summarised):
         ]
         for name, own in self.meta.items():
             levels = ", ".join(level["id"] for level in own["levels"])
+            states = counted(sum(level["states"] for level in own["levels"]), "state")
             reason = "" if own["mjcf"]["file"] else f"; no MJCF: {own['mjcf']['reason']}"
-            lines.append(f"  {name}: {sum(level['states'] for level in own['levels']):,} states of {levels}{reason}")
+            lines.append(f"  {name}: {states} of {levels}{reason}")
         return "\n".join(lines)
 
     def to_dict(self) -> dict[str, Any]:
