@@ -31,6 +31,12 @@ CONSUMER_AXES = 2e-6
 """Of the trace: a tensor of MuJoCo's in the link's axes. Before version 3.14 it stops diagonalising at rotations of 1.4e-6
 (measured: 4e-7 where ten links are merged). Our rules count a turn by a rounded pi (4e-8 at seven digits) for none."""
 
+DIAGONALISED = 4e-12
+"""Of all terms of a wrench: where MuJoCo stops diagonalising tensors."""
+
+SINGLE = 4e-6
+"""Of all terms of a wrench, in a program that computes in float32 (eps 1.2e-7) and that steps by 1e-4 s."""
+
 SOFT = 1e-4
 """How far a follower of MuJoCo's is off at least, in rad or m, after 0.4 s under 10 N or N m (measured in 3.13 and 4.0:
 2.1e-4 to 1.0e-3; before, without a constraint, 0.25 and more). A rigid one would be off by rounding."""

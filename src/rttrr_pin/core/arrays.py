@@ -27,6 +27,16 @@ def norm(vectors: Array) -> Array:
         return np.ldexp(np.sqrt(np.add.reduce(scaled * scaled, axis=-1)), exponent)
 
 
+def product(matrix: Array, vectors: Array) -> Array:
+    """Matrices times vectors, (..., 3, 3) and (..., 3), whose leading axes broadcast.
+
+    Written out, since a matrix product of the whole batch rounds by its size, and a state must give the same bits in
+    any batch.
+    """
+    x, y, z = (vectors[..., k, None] for k in range(3))
+    return matrix[..., :, 0] * x + matrix[..., :, 1] * y + matrix[..., :, 2] * z
+
+
 def rotation(rpy: Sequence[float]) -> Array:
     """URDF's roll, pitch, yaw about fixed x, y, z [rad] as R = R_z(yaw) R_y(pitch) R_x(roll), (3, 3).
 

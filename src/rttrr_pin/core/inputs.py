@@ -62,6 +62,15 @@ def coordinates(name: str, values: Coordinates, joints: Sequence[Joint]) -> Arra
     return array
 
 
+def copied(values: Coordinates) -> Coordinates:
+    """What was passed for q, v or a, and was taken, as it is now."""
+    if type(values) is np.ndarray:  # what a control loop passes
+        return values.copy()
+    if isinstance(values, Mapping):
+        return {name: np.array(x) for name, x in values.items()}
+    return np.array(values)
+
+
 def vectors(name: str, values: ArrayLike) -> Array:
     """A force, a moment or a gravity field, (..., 3), as float64.
 

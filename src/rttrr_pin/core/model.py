@@ -186,7 +186,7 @@ class Model(Rebuilt):
         ]
         return np.hstack([np.zeros((len(displacement), 0)), *own])
 
-    @property
+    @cached_property
     def link_names(self) -> tuple[str, ...]:
         """The names along the links axis of F, N, f, n (the root is not among them)."""
         return tuple(link.name for link in self.links)

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from rttrr_pin.core.arguments import choice
 from rttrr_pin.core.arrays import Array, Rebuilt
-from rttrr_pin.core.inputs import vectors
-from rttrr_pin.errors import ShapeError, UnknownNameError
+from rttrr_pin.core.inputs import Coordinates, coordinates, vectors
+from rttrr_pin.errors import InputError, ShapeError, UnknownNameError
+
+if TYPE_CHECKING:
+    from rttrr_pin.core.joint_wrenches import JointWrenches
+    from rttrr_pin.core.model import Model
 
 LINK_QUANTITIES = ("F", "N", "f", "n")
 """One vector for each link."""
@@ -74,6 +78,8 @@ class LinkWrenches:
         tau_joint: the part of tau that the joint itself takes (armature, friction), which its bearing does not carry.
         links: the names along the links axis.
         joints: the names along the last axis of tau.
+        model: the robot; None where that is not known.
+        q: a copy of the coordinates that were passed; None likewise.
     """
 
     tau: Array
@@ -84,11 +90,45 @@ class LinkWrenches:
     tau_joint: Array
     links: tuple[str, ...] = ()
     joints: tuple[str, ...] = ()
+    model: Model | None = None
+    q: Coordinates | None = None
 
     @classmethod
-    def of(cls, parts: Mapping[str, Array], links: tuple[str, ...], joints: tuple[str, ...]) -> LinkWrenches:
+    def of(
+        cls,
+        parts: Mapping[str, Array],
+        links: tuple[str, ...],
+        joints: tuple[str, ...],
+        model: Model | None = None,
+        q: Coordinates | None = None,
+    ) -> LinkWrenches:
         """The five quantities by name, with the names along their axes."""
-        return cls(**{key: parts[key] for key in RESULTS}, links=links, joints=joints)
+        return cls(**{key: parts[key] for key in RESULTS}, links=links, joints=joints, model=model, q=q)
+
+    def in_convention(self, name: str) -> JointWrenches:
+        """The wrenches of the joints as another program says them: its axes, point, sign and order.
+
+        The table of programs is docs/wrenches.md. Links that a program merges into others have no number there; here
+        they have what would cross their joint.
+
+        Args:
+            name: `"pinocchio"`, `"mujoco"`, `"drake"`, `"isaaclab"`, `"gazebo"`, `"newton"` or `"featherstone"`.
+
+        Raises:
+            UnknownNameError: there is no such convention.
+            InputError: the result is of no robot: it was not made by `Robot.inverse_dynamics`.
+        """
+        from rttrr_pin.core.conventions import convention
+        from rttrr_pin.core.joint_wrenches import joint_wrenches
+
+        row = convention(name)
+        if self.model is None or self.q is None:
+            raise InputError("this result does not say where its links are: ask that of Robot.inverse_dynamics")
+        return joint_wrenches(row, self.model, self._whole(self.q, self.model), self.f, self.n)
+
+    def _whole(self, q: Coordinates, model: Model) -> Array:
+        """The coordinates of each state of the batch, (..., nq)."""
+        return np.broadcast_to(coordinates("q", q, model.moving), (*self.tau.shape[:-1], model.nq))
 
     def at(self, name: str) -> dict[str, Array]:
         """What acts at one link, by quantity; for the name of a moving joint that no link has too, `{"tau": ...}`.
@@ -128,4 +168,7 @@ class LinkWrenches:
                 wanted="(..., nv) with a batch axis in front",
             )
         parts = {key: getattr(self, key)[index] for key in RESULTS}
-        return LinkWrenches(**parts, links=self.links, joints=self.joints)
+        q = self.q
+        if self.model is not None and q is not None:
+            q = (q if isinstance(q, np.ndarray) and q.ndim == self.tau.ndim else self._whole(q, self.model))[index]
+        return LinkWrenches.of(parts, self.links, self.joints, self.model, q)

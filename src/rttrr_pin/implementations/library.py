@@ -115,16 +115,6 @@ def _reduced(model: Model, joints: Sequence[LibraryJoint], forces: Array) -> Arr
     return np.array(generalised_forces(model, FLOAT, by_joint)).reshape(model.nv, len(forces)).T.copy()
 
 
-def product(matrix: Array, vectors: Array) -> Array:
-    """Matrices times vectors, (..., 3, 3) and (..., 3), whose leading axes broadcast.
-
-    Written out, since a matrix product of the whole batch rounds by its size, and a state must give the same bits in
-    any batch.
-    """
-    x, y, z = (vectors[..., k, None] for k in range(3))
-    return matrix[..., :, 0] * x + matrix[..., :, 1] * y + matrix[..., :, 2] * z
-
-
 def norms(arrays: Iterable[ArrayLike]) -> Array:
     """The Euclidean norm of each array."""
     return np.array([norm(np.ravel(x)) for x in arrays])

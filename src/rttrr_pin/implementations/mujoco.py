@@ -30,16 +30,20 @@ from typing import Any, NamedTuple
 import mujoco
 import numpy as np
 
-from rttrr_pin.core.arrays import Array, norm
+from rttrr_pin.core.arrays import Array, norm, product
+from rttrr_pin.core.conventions import convention
 from rttrr_pin.core.joints import FLOATING, PLANAR
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.implementations.allowance import add_inwards, levels, of_library
-from rttrr_pin.implementations.library import LibraryJoint, Motion, driving_forces, own_states, product
+from rttrr_pin.implementations.library import LibraryJoint, Motion, driving_forces, own_states
 from rttrr_pin.implementations.mujoco_model import PREFIX, build, mujoco_joints, own_refusal, rotation_of
 from rttrr_pin.implementations.protocol import Batch, Evaluation
+
+CONVENTION = convention("mujoco")
+"""Of `cfrc_int`; the robot hangs on one body, so that C is the centre of mass of all."""
 
 OPERATIONS = 4
 """Roundings in eps on the way of each term over one level: a quaternion product, its matrix, a sum."""
@@ -146,8 +150,8 @@ class Mujoco:
         moments = self.compiled.body_inertia[bodies]
         N = product(axes, moments * w_dot + np.cross(w, moments * w))
         moment, force = np.split(record.cfrc_int[:, bodies], 2, axis=-1)
-        n = product(turn, moment + np.cross(C - record.xpos[:, bodies], force))
-        return {"F": F, "N": N, "f": product(turn, force), "n": n}
+        f, n = CONVENTION.to_link(force, moment, record.xmat[:, bodies], C - record.xpos[:, bodies])
+        return {"F": F, "N": N, "f": f, "n": n}
 
 
 class _Record(NamedTuple):

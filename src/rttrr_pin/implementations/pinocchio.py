@@ -33,7 +33,7 @@ import numpy as np
 import pinocchio as pin
 from numpy.typing import NDArray
 
-from rttrr_pin.core.arrays import Array, norm
+from rttrr_pin.core.arrays import Array, norm, product
 from rttrr_pin.core.joints import CONTINUOUS, PLANAR
 from rttrr_pin.core.model import UNIVERSE, Model
 from rttrr_pin.core.payload import Load
@@ -46,7 +46,6 @@ from rttrr_pin.implementations.library import (
     driving_forces,
     norms,
     own_states,
-    product,
     shown,
     urdf_of,
 )

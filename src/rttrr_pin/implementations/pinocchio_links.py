@@ -7,8 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.core.arrays import Array, norm
-from rttrr_pin.implementations.library import product
+from rttrr_pin.core.arrays import Array, norm, product
 
 
 class PinLinks(NamedTuple):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, cast, overload
 
 from rttrr_pin.core.arguments import names_of
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.inputs import Coordinates, coordinates
+from rttrr_pin.core.inputs import Coordinates, coordinates, copied
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Payloads, loads_of
 from rttrr_pin.core.wrench import RESULTS, LinkWrenches
@@ -73,7 +73,7 @@ class Dynamics:
             tau (..., nv) and F, N, f, n (..., links, 3), the latter in {i}, the frame of each link.
         """
         parts = self._kernel(RESULTS)(q, v, a, payload)
-        return LinkWrenches.of(parts, self.link_names, self.model.v_names)
+        return LinkWrenches.of(parts, self.link_names, self.model.v_names, self.model, copied(q))
 
     def enclose(
         self,

@@ -9,6 +9,8 @@ from functools import partial
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.conventions import Convention, convention
+from rttrr_pin.core.joint_wrenches import joint_wrenches
 from rttrr_pin.core.model import Model
 from rttrr_pin.diagnosis.catalogue.altering import with_gravity
 from rttrr_pin.diagnosis.catalogue.kinematics import in_base, on_parents, turned, turned_back
@@ -79,6 +81,16 @@ def _spatial_in_base(variant: Variant, batch: Batch, values: Values) -> Values:
     return {"f": f, "n": n + np.cross(p, f)}
 
 
+def _as_in(row: Convention) -> Told:
+    """As another program says them."""
+
+    def told(variant: Variant, batch: Batch, values: Values) -> Values:
+        wrenches = joint_wrenches(row, variant.model, batch.q, values["f"], values["n"])
+        return {"f": wrenches.force, "n": wrenches.moment}
+
+    return told
+
+
 def _without_gravity(keys: str) -> Told:
     """Those of the recursion without gravity."""
 
@@ -138,6 +150,16 @@ SLIPS = (
     _slip(
         "f and n in base axes about the base", "f and n are in base axes, and n about the origin of the base",
         f"turn them to {AXES}, and take n about its origin", _spatial_in_base,
+    ),
+    *(
+        _slip(
+            f"f and n as in {program}", f"f and n are in base axes, and n about {point}, as in {program}",
+            f"turn them to {AXES}, and take n about its origin", _as_in(convention(name)),
+        )
+        for name, program, point in (
+            ("mujoco", "MuJoCo's cfrc_int", "the centre of mass of the tree of bodies"),
+            ("newton", "Newton's body_parent_f", "the centre of mass of each link"),
+        )
     ),
     _slip(
         "N about the origin", "N is about the origin of the link's frame", "N is about the centre of mass",
