@@ -132,10 +132,8 @@ class LevelResult(Summarised):
         quantity, value = self.worst
         count = sum(own.failures for own in self.quantities)
         beyond = f"{count:,} of {sum(own.count for own in self.quantities):,} numbers beyond rounding, "
-        where = (
-            f"{quantity} of {value.at} in state {value.state}, {value.of_allowance:.2g} of what rounding can explain"
-        )
-        return f"{told}: {beyond if count else ''}worst {where}"
+        where = f"{quantity} of {value.at} in state {value.state}"
+        return f"{told}: {beyond if count else ''}worst {where}, {value.of_allowance:.2g} of what rounding can explain"
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as data for JSON."""

@@ -97,10 +97,11 @@ def _check_subject(subject: Source, robots: Sequence[Robot] | None) -> None:
         )
     if for_one_robot(subject) and (robots is None or len(robots) != 1):
         what = f"{len(robots)} are named" if robots is not None else "levels have several"
+        call = f"conform({_named(subject)}, [robot])"
         raise InputError(
-            f"{_named(subject)} is made for one robot, and {what}: name the robot, conform({_named(subject)}, [robot]), "
-            "or one that is told which: a function of the model, or a command with {urdf} in it",
-            {f"conform({_named(subject)}, [robot])": "rttrr-pin conform SUBJECT ROBOT"},
+            f"{_named(subject)} is made for one robot, and {what}: name the robot, {call}, or a program that is told "
+            "which: a function of the model, or a command with {urdf} in it",
+            {call: "rttrr-pin conform SUBJECT ROBOT"},
         )
 
 

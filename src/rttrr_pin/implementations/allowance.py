@@ -156,7 +156,8 @@ def _sizes_of_tau_joint(batch: Batch) -> Array:
     model = batch.model
     states = joint_states(model, SIZES, *(list(np.abs(x).T) for x in (batch.q, batch.v, batch.a)))
     own = [joint_effects(joint.effects, state, SIZES) for joint, state in zip(model.joints, states, strict=True)]
-    columns = [np.broadcast_to(x, len(batch)) for x in generalised_forces(model, SIZES, own)]
+    forces: list[Any] = generalised_forces(model, SIZES, own)
+    columns = [np.broadcast_to(x, len(batch)) for x in forces]
     return np.stack(columns, axis=1) if columns else np.zeros((len(batch), 0))
 
 

@@ -138,7 +138,7 @@ class Program:
                 raise
             at = "" if not self.quantities else f" at state {batch.first + len(replies)}"
             message = f"{self.name} {error}{at}" if isinstance(error, _ReplyError) else str(error)
-            kind = RefusalError if isinstance(error, _Refusal) else ImplementationError
+            kind = RefusalError if isinstance(error, _RefusalError) else ImplementationError
             raise kind(message + (f"\nits stderr ends:\n{last_words}" if last_words else "")) from None
         return replies
 
@@ -149,7 +149,7 @@ class Program:
             raise _ReplyError(f"wrote what is no reply: {error}; it may write anything else to stderr") from None
         if isinstance(reply, dict) and "error" in reply:
             text = reply["error"] if isinstance(reply["error"], str) else "no text, where one is expected"
-            raise _Refusal(f"replied with an error: {shortened(text)}")
+            raise _RefusalError(f"replied with an error: {shortened(text)}")
         parts = quantities_of(reply, self.name)
         if self.quantities and set(parts) != set(self.quantities):
             raise _ReplyError(f"replied with {', '.join(parts)}, and with {', '.join(self.quantities)} before")
@@ -160,7 +160,7 @@ class _ReplyError(Exception):
     """No result was had of a program; the message continues a sentence that begins with its name."""
 
 
-class _Refusal(_ReplyError):
+class _RefusalError(_ReplyError):
     """The program said that it does not take the robot, or the state."""
 
 

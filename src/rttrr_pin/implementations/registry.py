@@ -127,7 +127,7 @@ def is_table(source: Source) -> bool:
 
 
 def _makes(source: Callable[..., Any]) -> bool:
-    """Whether it is a class, or a function that takes one argument, and so is asked for an implementation of a robot."""
+    """Whether it is a class, or a function of one argument: what makes an implementation of a robot."""
     if isinstance(source, type):
         return True
     try:
