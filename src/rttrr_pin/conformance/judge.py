@@ -18,7 +18,7 @@ from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import LINK_QUANTITIES
 from rttrr_pin.errors import ImplementationError, RefusalError, RttrrError
 from rttrr_pin.exact.enclosures import Enclosures, enclose
-from rttrr_pin.implementations import Evaluation, Implementation, default_allowance
+from rttrr_pin.implementations import Batch, Evaluation, Implementation, default_allowance
 from rttrr_pin.implementations.allowance import DOUBLE, SINGLE, Precision
 from rttrr_pin.implementations.protocol import evaluated
 from rttrr_pin.validation.comparison import check_bounds, off_the_truth, true_parameters
@@ -99,11 +99,11 @@ def precision_of(results: Iterable[Mapping[str, Array]]) -> Precision:
     return SINGLE if long >= LONG else DOUBLE
 
 
-def allowed(case: Case, evaluation: Evaluation, precision: Precision) -> Evaluation:
+def allowed(batch: Batch, evaluation: Evaluation, precision: Precision) -> Evaluation:
     """The result with what rounding in that precision may make of it, or its author's allowance where that is more."""
     if precision is DOUBLE and evaluation.allowance is not None:
         return evaluation
-    least = default_allowance(case.batch, precision)
+    least = default_allowance(batch, precision)
     own = evaluation.allowance or {}
     return replace(evaluation, allowance={key: np.maximum(x, own.get(key, 0.0)) for key, x in least.items()})
 
@@ -122,7 +122,7 @@ def judged(case: Case, subject: Implementation, evaluation: Evaluation, precisio
         InputError: no bound on the rounding is finite.
     """
     with np.errstate(over="ignore", invalid="ignore"):
-        result = allowed(case, evaluation, precision)
+        result = allowed(case.batch, evaluation, precision)
         check_bounds(case.batch, subject, result)
         parts = _by_quantity(case, result, precision)
     outcome: Literal["pass", "fail"] = "fail" if any(own.failures for own in parts) else "pass"

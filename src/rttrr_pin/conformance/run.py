@@ -75,6 +75,8 @@ def conform(
         results.append(_judged(case, programs[id(case.robot)], answer, own))
         if progress is not None:
             progress(len(results))
+    if diagnose:
+        results = _explained(asked, programs, results, own)
     made = [one for one in programs.values() if isinstance(one, Implementation)]
     return Conformance(
         subject=_label(subject, made[0]),
@@ -145,6 +147,26 @@ def _judged(case: Case, program: Implementation | RttrrError, answer: Answer, pr
         assert isinstance(answer, LevelResult)
         return answer
     return judged(case, program, answer, precision)
+
+
+def _explained(
+    asked: Sequence[Case],
+    programs: dict[int, Implementation | RttrrError],
+    results: list[LevelResult],
+    precision: Precision,
+) -> list[LevelResult]:
+    """The outcomes, with the cause where numbers failed."""
+    failing = {}
+    for k, (case, result) in enumerate(zip(asked, results, strict=True)):
+        program = programs[id(case.robot)]
+        if result.outcome == "fail" and not isinstance(program, RttrrError):
+            failing[k] = (case, program, result)
+    if not failing:
+        return results
+    from rttrr_pin.conformance.causes import with_causes  # a thousand hypotheses, which a program that passes needs not
+
+    found = dict(zip(failing, with_causes(list(failing.values()), precision), strict=True))
+    return [found.get(k, result) for k, result in enumerate(results)]
 
 
 def _label(subject: Source, program: Implementation) -> str:

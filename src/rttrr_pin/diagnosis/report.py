@@ -49,7 +49,8 @@ def show_diagnosis(result: Diagnosis, console: Console, full: bool = False) -> N
 def compared(result: Diagnosis) -> str:
     """What was compared with what, in how many states."""
     plural = "s" * (result.n_states != 1)
-    states = f"state{plural} of the table" if result.sampling == "table" else f"telling state{plural}"
+    kinds = {"table": f"state{plural} of the table", "given": f"state{plural}"}
+    states = kinds.get(result.sampling, f"telling state{plural}")
     return f"{result.subject} against {result.reference}, {result.n_states:,} {states}"
 
 

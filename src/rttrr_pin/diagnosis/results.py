@@ -97,7 +97,7 @@ class Diagnosis(Summarised):
         near_misses: what comes nearest, best first; where it is unexplained.
         counterexample: a test to paste, of a state as simple as could be found; empty where there is none.
         n_states: how many states were compared.
-        sampling: "telling" or "table".
+        sampling: "telling", "table" or "given".
         tried: how many hypotheses were.
         notes: what a reader must know.
         seconds: wall time.

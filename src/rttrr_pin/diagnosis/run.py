@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -95,6 +95,34 @@ def diagnose(
     return result
 
 
+def diagnose_at(
+    batch: Batch,
+    subject: Implementation,
+    reference: Source = "recursion",
+    ids: Collection[str] | None = None,
+    progress: Progress | None = None,
+) -> Diagnosis:
+    """Find out why a program's inverse dynamics differ from another's at given states; without a test to paste.
+
+    Args:
+        batch: the states.
+        subject: the program that is asked, made for the robot of the batch.
+        reference: what it is compared with.
+        ids: of the hypotheses that are tried (`Hypothesis.id`); None for the whole catalogue.
+        progress: called with the number of hypotheses tried so far.
+
+    Raises:
+        InputError: the programs have no quantity in common, or all that they give is zero, or no number.
+        ImplementationError: a program dies, or says something else than numbers.
+    """
+    begin = time.perf_counter()
+    programs = [subject, make_implementation(reference, batch.model)]
+    every = hypotheses_of(batch.model)
+    tried = every if ids is None else [own for own in every if own.id in ids]
+    with np.errstate(over="ignore", invalid="ignore"):
+        return _diagnosed(programs, batch, "given", progress, begin, tried)
+
+
 def hypotheses_of(model: Model) -> list[Hypothesis]:
     """The whole catalogue about a robot."""
     return [own for catalogue in CATALOGUES for own in catalogue(model)]
@@ -114,9 +142,14 @@ def _states(
 
 
 def _diagnosed(
-    programs: Sequence[Implementation], batch: Batch, sampling: str, progress: Progress | None, begin: float
+    programs: Sequence[Implementation],
+    batch: Batch,
+    sampling: str,
+    progress: Progress | None,
+    begin: float,
+    hypotheses: Sequence[Hypothesis] | None = None,
 ) -> Diagnosis:
-    """The diagnosis of two programs at these states."""
+    """The diagnosis of two programs at these states, by the whole catalogue or by some hypotheses."""
     model = batch.model
     shared = tuple(key for key in QUANTITIES if all(key in one.quantities for one in programs))
     if not shared:
@@ -133,7 +166,7 @@ def _diagnosed(
         )
     before = both.of_tolerance(both.expected)
     differs = bool((before > 1.0).any())
-    found = _explained(programs, evidence, progress) if differs else _Found()
+    found = _explained(programs, evidence, progress, hypotheses) if differs else _Found()
     lines: tuple[str, ...] = ()
     if differs and not found.causes:
         lines = (*found.alone, *dependence(programs, both))
@@ -155,7 +188,7 @@ def _diagnosed(
         residual_after=float(left.max(initial=0.0)),
         dependence=lines,
         near_misses=tuple(sorted(found.near, key=lambda near: -near.explains)[:NEAR_MISSES]),
-        counterexample=counterexample(programs, both) if differs else "",
+        counterexample=counterexample(programs, both) if differs and hypotheses is None else "",
         n_states=len(batch),
         sampling=sampling,
         tried=found.tried,
@@ -187,15 +220,20 @@ class _Found:
     alone: tuple[str, ...] = ()
 
 
-def _explained(programs: Sequence[Implementation], evidence: Sequence[Evidence], progress: Progress | None) -> _Found:
+def _explained(
+    programs: Sequence[Implementation],
+    evidence: Sequence[Evidence],
+    progress: Progress | None,
+    hypotheses: Sequence[Hypothesis] | None,
+) -> _Found:
     """Each program against the recursion, where it differs from it."""
     model = evidence[0].batch.model
-    base, hypotheses = Variant(model), hypotheses_of(model)
+    base, tried = Variant(model), hypotheses_of(model) if hypotheses is None else hypotheses
     found, unexplained = _Found(), False
     for sign, program, own in zip((1.0, -1.0), programs, evidence, strict=True):
         if (own.of_tolerance(own.expected) <= 1.0).all():
             continue
-        search = Search(own, base, hypotheses, progress)
+        search = Search(own, base, tried, progress)
         explanations = search.run()
         found.tried += search.tried
         if not explanations or not explanations[0].explains or _by_chance(explanations[0], own, search.tried):
