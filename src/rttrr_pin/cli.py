@@ -27,6 +27,7 @@ COMMANDS = {
     "sample": "rttrr_pin.diagnosis.sample_command:sample",
     "diagnose": "rttrr_pin.diagnosis.command:diagnose",
     "laws": "rttrr_pin.laws.command:laws",
+    "conform": "rttrr_pin.conformance.command:conform",
     "vectors": "rttrr_pin.conformance.vectors_command:vectors",
     "compare": "rttrr_pin.diagnosis.compare_command:compare",
     "audit": "rttrr_pin.auditing.command:audit",

@@ -187,8 +187,12 @@ class Standing:
                 reached = level.number
         return reached
 
-    def sentence(self) -> str:
-        """What was shown and no more: `14 of 14`; else the level reached, and all that were not passed on the way."""
+    def sentence(self, most: int = len(LEVELS)) -> str:
+        """What was shown and no more: `14 of 14`; else the level reached, and what was not passed.
+
+        Args:
+            most: of more levels that failed, or were not asked, it is said how many they are.
+        """
         total = len(LEVELS)
         if self.whole:
             return f"{total} of {total}"
@@ -201,7 +205,11 @@ class Standing:
         else:
             names = f" ({', '.join(self.passed)})" if self.passed and self.not_asked else ""
             head = f"{len(self.passed)} of {total} levels{names}"
-        return "; ".join([head, *(f"{kind}: {', '.join(ids)}" for kind, ids in parts.items() if ids)])
+        told = {kind: ", ".join(ids) for kind, ids in parts.items() if ids}
+        for kind in ("failed", "not asked"):
+            if len(parts.get(kind, ())) > most:
+                told[kind] = f"{len(parts[kind])} levels"
+        return "; ".join([head, *(f"{kind}: {ids}" for kind, ids in told.items())])
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -212,6 +220,7 @@ class Conformance(Summarised):
         subject: name and version of the program.
         results: level by level, robot by robot.
         precision: whose rounding it is judged in, "float64" or "float32".
+        own_robots: whether it was asked with robots of the user's, and not with those of the levels.
         n_states: states of each case.
         seed: of the states.
         notes: what a reader must know.
@@ -222,6 +231,7 @@ class Conformance(Summarised):
     subject: str
     results: tuple[LevelResult, ...]
     precision: str
+    own_robots: bool
     n_states: int
     seed: int
     notes: tuple[str, ...]
@@ -243,9 +253,14 @@ class Conformance(Summarised):
         """The names of the robots, each once."""
         return tuple(dict.fromkeys(own.robot for own in self.results))
 
+    def claim(self, most: int = len(LEVELS)) -> str:
+        """What was shown, and no more: on which robots if they are the user's, `Standing.sentence`, and in float32."""
+        robots = f"{', '.join(self.robots)}: " if self.own_robots else ""
+        return f"{robots}{self.standing.sentence(most)}{' in float32' if self.precision == 'float32' else ''}"
+
     def summary(self) -> str:
         """How far the program gets; then a line for each case that was not passed."""
-        head = f"{'PASS' if self.passed else 'FAIL'} {self.subject}, {self.precision}: {self.standing.sentence()}"
+        head = f"{'PASS' if self.passed else 'FAIL'} {self.subject}: {self.claim()}"
         return "\n".join([head, *(own.summary() for own in self.results if not own.passed)])
 
     def to_dict(self) -> dict[str, Any]:
@@ -256,8 +271,10 @@ class Conformance(Summarised):
                 "schema": 1,
                 "passed": self.passed,
                 "subject": self.subject,
+                "claim": self.claim(),
                 "standing": standing,
                 "precision": self.precision,
+                "own_robots": self.own_robots,
                 "n_states": self.n_states,
                 "seed": self.seed,
                 "bins_eps": [*BINS, None],

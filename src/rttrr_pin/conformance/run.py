@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable, Sequence
+from itertools import count
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -51,7 +52,7 @@ def conform(
         seed: of the states.
         precision: "float64" or "float32", in whose rounding it is judged; "auto" finds it out from its numbers.
         diagnose: whether to say why a level fails.
-        progress: called with the number of cases done.
+        progress: called with the number of cases judged, and explained, so far.
 
     Returns:
         The outcome of each case, and the level reached.
@@ -76,12 +77,13 @@ def conform(
         if progress is not None:
             progress(len(results))
     if diagnose:
-        results = _explained(asked, programs, results, own)
+        results = _explained(asked, programs, results, own, progress)
     made = [one for one in programs.values() if isinstance(one, Implementation)]
     return Conformance(
         subject=_label(subject, made[0]),
         results=tuple(results),
         precision=own.name,
+        own_robots=robots is not None,
         n_states=len(asked[0].batch),
         seed=int(seed),
         notes=tuple(dict.fromkeys(note for one in made for note in getattr(one, "notes", ()))),
@@ -154,6 +156,7 @@ def _explained(
     programs: dict[int, Implementation | RttrrError],
     results: list[LevelResult],
     precision: Precision,
+    progress: Progress | None,
 ) -> list[LevelResult]:
     """The outcomes, with the cause where numbers failed."""
     failing = {}
@@ -165,7 +168,9 @@ def _explained(
         return results
     from rttrr_pin.conformance.causes import with_causes  # a thousand hypotheses, which a program that passes needs not
 
-    found = dict(zip(failing, with_causes(list(failing.values()), precision), strict=True))
+    steps = count(len(results) + 1)
+    advance = None if progress is None else lambda: progress(next(steps))
+    found = dict(zip(failing, with_causes(list(failing.values()), precision, advance), strict=True))
     return [found.get(k, result) for k, result in enumerate(results)]
 
 
