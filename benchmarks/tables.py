@@ -393,11 +393,40 @@ def three_numbers() -> Lines:
     ]
 
 
+def vectors() -> Lines:
+    data, checked = result("vectors"), result("vectors_check")
+    counts = [sum(own["widths"][name] for own in checked["robots"].values()) for name in data["widths"]]
+    rows = [
+        [
+            name,
+            ", ".join(own["levels"]),
+            own["links"],
+            f"{own['states']:,}",
+            f"{own['numbers']:,}",
+            f"{own['outside']:,}",
+            f"{own['seconds']:.0f} s",
+        ]
+        for name, own in checked["robots"].items()
+    ]
+    return [
+        f"The bundled set: {data['states']:,} states, {sum(data['widths'].values()):,} true values, "
+        f"{data['bytes'] / 1e6:.1f} MB, {data['bytes_packed'] / 1e6:.1f} MB packed ({measured(data, 'vectors')}).",
+        "",
+        f"Checked on {checked['states']:,} states by a program of its own with {checked['digits']} digits "
+        f"({measured(checked, 'vectors_check')}): **{checked['outside']:,} of {checked['numbers']:,} true values "
+        f"outside** their enclosure. Of the enclosures {counts[0]:,} are one double, {counts[1]:,} two neighbours, "
+        f"{counts[2] + counts[3]:,} wider.",
+        "",
+        *table(["robot", "levels", "links", "states", "true values", "outside", "mpmath"], rows),
+    ]
+
+
 TABLES: dict[str, Callable[[], Lines]] = {
     "agreement": agreement, "audit": audit, "bounds": bounds, "calls": calls, "cost": cost, "errors": errors,
     "faults": faults,
     "installed size": installed_size, "joints": joints, "main path": main_path, "operations": operations,
     "peers": peers, "robots": robots, "speed": speed, "three numbers": three_numbers,
+    "vectors": vectors,
 }  # fmt: skip
 """By the name in the marker."""
 

@@ -19,6 +19,8 @@ from rttrr_pin.errors import UnknownNameError
 from rttrr_pin.exact import Enclosures, enclose
 from support.trees import random_tree
 
+OTHER_SCHEMA = '{"format": "rttrr-pin vectors", "schema": 2}'
+
 LEVELS = ("payload", "mimic", "floating", "effects", "cancelling")
 
 
@@ -177,9 +179,20 @@ def test_what_cannot_be_written_or_read_is_said(written: Vectors, tmp_path: Path
         write_vectors(tmp_path, twice)
     with pytest.raises(InputError, match="cannot be read"):
         read_vectors(tmp_path)
-    (tmp_path / "manifest.json").write_text("{}")
-    with pytest.raises(InputError, match="rttrr-pin vectors"):
-        read_vectors(tmp_path)
+    for text, sentence in (("{}", "rttrr-pin vectors"), ("{", "no JSON"), (OTHER_SCHEMA, "schema 2, expected 1")):
+        (tmp_path / "manifest.json").write_text(text)
+        with pytest.raises(InputError, match=sentence):
+            read_vectors(tmp_path)
+
+
+@pytest.mark.parametrize("key", ["joints", "levels", "order", "sha256", "gravity"])
+def test_a_meta_file_that_lacks_something_is_refused(written: Vectors, tmp_path: Path, key: str) -> None:
+    folder = Path(shutil.copytree(written.folder / "mimic", tmp_path / "mimic"))
+    meta = json.loads((folder / "meta.json").read_text())
+    del meta[key]
+    (folder / "meta.json").write_text(json.dumps(meta))
+    with pytest.raises(InputError, match=f"lacks '{key}'"):
+        read_vectors(folder)
 
 
 def chain() -> tuple[tuple[rttrr_pin.Link, ...], tuple[rttrr_pin.Joint, ...]]:

@@ -175,7 +175,10 @@ def read_json(path: Path) -> dict[str, Any]:
     Raises:
         InputError: it is missing, no JSON, or of another format or schema.
     """
-    data = json.loads(read_file(path))
+    try:
+        data = json.loads(read_file(path))
+    except ValueError as error:
+        raise InputError(f"{path} is no JSON: {error}; fetch or write it again") from None
     if not isinstance(data, dict) or data.get("format") != FORMAT:
         raise InputError(f"{path} is no {path.name} of {FORMAT}: name a folder that `rttrr-pin vectors` wrote")
     if data.get("schema") != SCHEMA:

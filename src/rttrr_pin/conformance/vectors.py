@@ -90,10 +90,11 @@ class Vectors(Summarised):
     def summary(self) -> str:
         """One line for the whole, and one for each robot."""
         numbers = sum(self.widths.values())
-        lines = [
-            f"{self.folder}: {counted(len(self.meta), 'robot')}, {self.states:,} states, {numbers:,} proven numbers, "
-            f"{self.bytes / 1e6:.1f} MB"
-        ]
+        size = f"{self.bytes / 1e6:.1f} MB" if self.bytes >= 1e6 else f"{self.bytes / 1e3:.0f} kB"
+        what = (
+            f"{counted(len(self.meta), 'robot')}, {counted(self.states, 'state')}, {numbers:,} proven numbers, {size}"
+        )
+        lines = [f"{self.folder}: {what}"]
         for name, own in self.meta.items():
             levels = ", ".join(level["id"] for level in own["levels"])
             states = counted(sum(level["states"] for level in own["levels"]), "state")
@@ -242,16 +243,22 @@ def read_vectors(folder: str | Path | None = None, levels: Sequence[str] | None 
         sums = read_json(place / MANIFEST)["robots"]
         found = [_read_robot(place / name, own) for name, own in sums.items()]
     else:
-        found = [_read_robot(place, None)]
+        found = [_read_robot(place)]
     for own in levels or ():
         _level(own)
     return [case for part in found for case in part if levels is None or case.level.id in levels]
 
 
-def _read_robot(folder: Path, sum: str | None) -> list[ProvenCase]:
+def _read_robot(folder: Path, sum: str | None = None) -> list[ProvenCase]:
     """The cases of one robot."""
     read_file(folder / META, sum)
-    meta = read_json(folder / META)
+    try:
+        return _cases_of(folder, read_json(folder / META))
+    except (KeyError, TypeError) as error:
+        raise InputError(f"{folder / META} lacks {error}, or has it in another form: fetch or write it again") from None
+
+
+def _cases_of(folder: Path, meta: dict[str, Any]) -> list[ProvenCase]:
     content = {name: read_file(folder / name, own) for name, own in meta["sha256"].items()}
     robot = robot_of(content[URDF].decode(), meta)
     model = robot.model
