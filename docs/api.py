@@ -26,6 +26,7 @@ PACKAGES = (
     "rttrr_pin.validation",
     "rttrr_pin.diagnosis",
     "rttrr_pin.laws",
+    "rttrr_pin.conformance",
     "rttrr_pin.inspection",
     "rttrr_pin.auditing",
     "rttrr_pin.derivation",
