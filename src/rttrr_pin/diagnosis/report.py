@@ -15,6 +15,9 @@ from rttrr_pin.diagnosis.results import Cause, Diagnosis, Residual
 SHOWN = 8
 """Rows, or alternatives, that are shown unless all are asked for."""
 
+OTHERS = 3
+"""Other sets of causes, likewise."""
+
 STYLES = {"agrees": "bold green", "explained": "bold yellow", "unexplained": "bold red"}
 
 
@@ -32,9 +35,12 @@ def show_diagnosis(result: Diagnosis, console: Console, full: bool = False) -> N
     )
     for number, cause in enumerate(result.causes, 1):
         _show_cause(cause, f"{number}. " if len(result.causes) > 1 else "", console, full)
-    for k, other in enumerate(result.others[: None if full else 3]):
+    others = result.others if full else result.others[:OTHERS]
+    for k, other in enumerate(others):
         head = "or, which these states do not tell from it: " if k == 0 else "or: "
         console.print(Text(head + "; ".join(map(told, other))), soft_wrap=True)
+    if len(others) < len(result.others):
+        console.print(Text(f"or one of {len(result.others) - len(others)} more; --full shows all"))
     for line in result.dependence:
         console.print(Text(f"- {line}"), soft_wrap=True)
     if result.near_misses:

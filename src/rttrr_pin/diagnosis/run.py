@@ -174,6 +174,8 @@ def _diagnosed(
         lines = ("in all other states it is rounding",)
     if differs and before.max() < BARELY:
         notes.append("the difference is barely more than rounding explains: many a cause would be as good")
+    if found.left_out:
+        notes.append(f"{found.left_out} sets of causes more than those that are listed explain these states as well")
     after = both.difference - (found.changes if found.causes else 0.0)
     left = ratio(np.abs(after), both.tolerance + found.rounding) if found.causes else before
     return Diagnosis(
@@ -204,6 +206,7 @@ class _Found:
     Attributes:
         causes: of both programs; none where what one of them does is unexplained.
         others: other sets.
+        left_out: how many more of them there are.
         near: what comes nearest.
         changes: of the difference, by the causes.
         rounding: of the recursion under the causes.
@@ -213,6 +216,7 @@ class _Found:
 
     causes: list[Cause] = field(default_factory=list)
     others: list[tuple[Cause, ...]] = field(default_factory=list)
+    left_out: int = 0
     near: list[NearMiss] = field(default_factory=list)
     changes: Array | float = 0.0
     rounding: Array | float = 0.0
@@ -243,6 +247,7 @@ def _explained(
         first, *rest = explanations
         found.causes += _causes(first, program)
         found.others += [tuple(_causes(one, program)) for one in rest[:OTHERS]]
+        found.left_out += len(rest[OTHERS:])
         values = predicted(applied(base, first.hypotheses, first.numbers), own)
         found.changes += sign * (values - own.expected)
         found.rounding += own.rounding * growth(values, own.expected)
@@ -250,7 +255,7 @@ def _explained(
         found.alone = tuple(
             f"{one.sentence}: {one.program} does nothing else otherwise than the recursion" for one in found.causes
         )
-        found.causes, found.others = [], []
+        found.causes, found.others, found.left_out = [], [], 0
     return found
 
 
