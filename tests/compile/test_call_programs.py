@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import threading
 from collections.abc import Sequence
+from functools import lru_cache
 from pathlib import Path
 
 import numpy as np
@@ -100,17 +101,22 @@ def test_each_output_alone_is_that_of_straight_lines(name: str, seed: int) -> No
 
 
 def test_any_robot_of_the_shared_fixture(robot: Robot) -> None:
-    """Fixed joints at any place, no joint that moves, one joint."""
+    """Fixed joints at any place, no joint that moves, one joint; what is called is the same by each emitter."""
     s = states(robot, 1)
-    ours = forced(robot, FIVE)(s.q, s.v, s.a)
+    ours = forced(robot, FIVE, "numpy")(s.q, s.v, s.a)
     assert_equal(ours, recursion(robot, s.q, s.v, s.a))
 
 
-def test_a_long_chain_takes_calls_by_itself() -> None:
+def test_a_long_chain_takes_calls_by_itself_and_is_not_traced_to_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    limits, made = [], list[CallProgram]()
+    whole, calls = build.trace, build.call_program
+    monkeypatch.setattr(build, "trace", lambda *words, most: limits.append(most) or whole(*words, most=most))
+    monkeypatch.setattr(build, "call_program", lambda *words, **more: made.append(calls(*words, **more)) or made[-1])
     robot = chain(250)
-    assert isinstance(build.build(robot.model, ["tau"]), CallProgram)
     s = states(robot, 0, 20)
     tau = robot.compile("tau")(s.q, s.v, s.a)
+    assert limits == [build.NODES * build.STRAIGHT_LINE]
+    assert [type(program) for program in made] == [CallProgram]
     for ours, reference in zip(tau, recursion(robot, s.q, s.v, s.a).tau, strict=True):
         assert norm_error(ours, reference) <= ROUNDING
 
@@ -120,14 +126,6 @@ def test_the_threshold_counts_operations() -> None:
     count = trace(model, ["tau"]).operations.total
     assert isinstance(build.build(model, ["tau"], straight_line=count), Program)
     assert isinstance(build.build(model, ["tau"], straight_line=count - 1), CallProgram)
-
-
-def test_a_robot_far_beyond_the_threshold_is_not_traced_to_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
-    limits = []
-    whole = build.trace
-    monkeypatch.setattr(build, "trace", lambda *words, most: limits.append(most) or whole(*words, most=most))
-    build.build(chain(250).model, ["tau"])
-    assert limits == [build.NODES * build.STRAIGHT_LINE]
 
 
 def test_what_is_no_sequence_of_steps_stays_straight_until_it_is_too_long(
@@ -156,9 +154,14 @@ def test_emitters_that_know_no_calls_get_straight_lines(rttrr: Robot, monkeypatc
     assert norm_error(forced(rttrr, "tau", "numpy")(s.q, s.v, s.a), recursion(rttrr, s.q, s.v, s.a).tau) <= ROUNDING
 
 
+@lru_cache
+def called(joints: int) -> CallProgram:
+    return build.call_program(chain(joints).model, ["tau"])
+
+
 def test_code_does_not_grow_with_the_robot() -> None:
     """The table of calls does, by as much for each joint; the operations that are compiled stay the same."""
-    programs = [build.call_program(chain(joints).model, ["tau"]) for joints in (50, 100, 200)]
+    programs = [called(joints) for joints in (30, 60, 120)]
     operations = [[step.program.operations for step in program.steps] for program in programs]
     assert operations[0] == operations[1] == operations[2]
     assert sum(step.total for step in operations[0]) > 100
@@ -168,14 +171,14 @@ def test_code_does_not_grow_with_the_robot() -> None:
 
 def test_columns_are_used_again() -> None:
     """What lies between inputs and outputs: R, f and n of each link, and little else."""
-    small, large = (build.call_program(chain(joints).model, ["tau"]) for joints in (100, 200))
-    assert (large.between - small.between) / 100 <= 9 + 3 + 3
+    small, large = called(60), called(120)
+    assert (large.between - small.between) / 60 <= 9 + 3 + 3
 
 
 @pytest.mark.one_in(3)
 @pytest.mark.parametrize("size", [1, 8, 64])
 def test_the_same_bits_in_any_block_layout_or_thread(size: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    robot = rttrr_pin.load(random_tree(3, 30), friction=True)
+    robot = rttrr_pin.load(random_tree(3, 12), friction=True)
     s = states(robot, 0, 9000)
     kernel = forced(robot, FIVE)
     batch = kernel(s.q, s.v, s.a)

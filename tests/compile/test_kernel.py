@@ -65,6 +65,7 @@ def test_trees_with_every_joint_type_followers_and_friction(seed: int, joints: i
     agree(tree(seed, joints, base), outputs, seed=seed)
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("seed", range(8))
 def test_many_trees_by_the_emitter_that_compiles_nothing(seed: int) -> None:
     """The same program, lumped and folded, without the compiler's time."""

@@ -63,7 +63,7 @@ def rough(rttrr: Robot) -> Robot:
 NOT_FINITE = (np.nan, np.inf, -np.inf)
 
 
-@pytest.mark.one_in(4)
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("value", slow_after(1, NOT_FINITE))
 @pytest.mark.parametrize("name", QUANTITIES)
 def test_what_is_not_finite_is_found_in_every_input(rough: Robot, name: str, value: float, emitter: str) -> None:

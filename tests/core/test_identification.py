@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from fractions import Fraction
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -237,6 +238,12 @@ def test_effects_do_not_move_the_inertial_basis(rttrr: Robot) -> None:
     assert driven_too.base_parameters().independent == rttrr.base_parameters().independent
 
 
+@cache
+def independent(name: str) -> tuple[int, ...]:
+    """Parameters of the base of the robot, and of its joints."""
+    return rttrr_pin.load(TREES.get(name, name)).base_parameters(joint_effects=True).independent
+
+
 @pytest.mark.one_in(3)
 @pytest.mark.parametrize("scale", [1e-30, 1e-6, 1e6, 1e30])
 @pytest.mark.parametrize("name", ["rttrr", "tree_2"])
@@ -244,6 +251,6 @@ def test_a_robot_of_any_size_has_the_same_basis(name: str, scale: float) -> None
     model = rttrr_pin.load(TREES.get(name, name)).model
     joints = tuple(replace(joint, p=joint.p * scale) for joint in model.joints)
     base = Robot(replace(model, joints=joints, document=None)).base_parameters(joint_effects=True)
-    assert base.independent == Robot(model).base_parameters(joint_effects=True).independent
+    assert base.independent == independent(name)
     assert base.farthest_dependent < base.tolerance**1.2
     assert base.nearest_independent > base.tolerance**0.5

@@ -49,6 +49,7 @@ def test_jacobians_and_placements_are_pinocchios(seed: int, base: Any) -> None:
             assert norm_error(robot.jacobian(q[k], link, POINT), tip) <= ROUNDING
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("axes", ["link", "base"])
 @pytest.mark.parametrize("seed", range(3))
 def test_a_wrench_takes_what_the_recursion_says_of_a_payload(seed: int, axes: Any) -> None:

@@ -241,7 +241,9 @@ def test_a_small_difference_in_many_states_is_evidence() -> None:
     assert found.verdict == "explained" and "factor" in found.causes[0].hypothesis
 
 
-def test_the_cause_of_one_program_is_told_where_the_other_is_unexplained(arm: Robot) -> None:
-    found = diagnose(arm, Wrong(arm, odd, "odd"), Wrong(arm, lambda batch, tau: -tau, "negative"), n_states=40)
+@pytest.mark.slow
+def test_the_cause_of_one_program_is_told_where_the_other_is_unexplained() -> None:
+    robot = rttrr_pin.load("trr")
+    found = diagnose(robot, Wrong(robot, odd, "odd"), Wrong(robot, lambda batch, tau: -tau, "negative"), n_states=30)
     assert found.verdict == "unexplained" and not found.causes
     assert any("opposite sign" in line and "negative" in line for line in found.dependence)

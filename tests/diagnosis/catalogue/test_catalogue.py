@@ -234,7 +234,7 @@ def calls_for(links: int) -> int:
 
 
 def test_the_work_grows_as_the_tree() -> None:
-    assert calls_for(48) < 3 * calls_for(24)
+    assert calls_for(32) < 3 * calls_for(16)
 
 
 def test_lines_are_those_of_the_file() -> None:

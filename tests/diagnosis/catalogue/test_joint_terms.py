@@ -37,10 +37,14 @@ def robots() -> dict[str, Robot]:
 NAMES = ("rttrr", "mimic and friction", "all types", "floating")
 
 
-def tau(robot: Robot, q: Array, v: Array, a: Array) -> Array:
+@cache
+def bare(robot: Robot) -> Robot:
     """Without gravity and what joints take themselves."""
-    own = Robot(robot.model.without_joint_effects().with_gravity(np.zeros(3)))
-    return own.inverse_dynamics(q, v, a).tau
+    return Robot(robot.model.without_joint_effects().with_gravity(np.zeros(3)))
+
+
+def tau(robot: Robot, q: Array, v: Array, a: Array) -> Array:
+    return bare(robot).inverse_dynamics(q, v, a).tau
 
 
 @pytest.mark.parametrize("name", NAMES)

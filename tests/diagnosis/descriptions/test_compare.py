@@ -391,11 +391,11 @@ def test_limits_and_friction_that_take_no_part_are_told() -> None:
     assert [own.difference.kind for own in taking.mattering] == ["damping", "friction"]
 
 
-@pytest.mark.one_in(4)
-@pytest.mark.parametrize("block", range(4))
+@pytest.mark.one_in(10)
+@pytest.mark.parametrize("block", range(10))
 def test_random_pairs_never_crash(block: int) -> None:
     """Also robots that have little in common; what is left is told."""
-    for k in range(50):
+    for k in range(20):
         rng = np.random.default_rng([block, k])
         models = [rttrr_pin.load(random_tree(int(rng.integers(1000)), int(rng.integers(1, 7)))) for _ in "ab"]
         with suppress(InputError):  # no joint in common
