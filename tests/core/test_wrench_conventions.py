@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import product
@@ -22,7 +23,8 @@ from rttrr_pin.implementations.allowance import sizes
 from rttrr_pin.validation import Sampler
 from support import wrench_programs
 from support.recursion import recursion
-from support.tolerances import DIAGONALISED, EXACT, ROUNDING
+from support.serial_chains import random_chain
+from support.tolerances import DIAGONALISED, EXACT, ROUNDING, SINGLE
 from support.trees import random_tree
 
 STATES = 5
@@ -134,6 +136,40 @@ def test_drake(name: str) -> None:
     told = wrench_programs.drake(robot, batch)
     assert {*told[1]} == {*robot.link_names}
     assert agreeing(robot, batch, told) == only("drake")
+
+
+@pytest.mark.simulators
+def test_physx() -> None:
+    """Of free joints, in float32; the frame on the child's side of each joint is that of the link, about whose axes x, y or z it moves."""
+    types = ("revolute", "prismatic", "revolute", "fixed", "continuous")
+    axes = iter(("0 0 1", "1 0 0", "0 1 0", "1 0 0"))
+    robot = rttrr_pin.load(re.sub(r'(?<=<axis xyz=")[^"]*', lambda _: next(axes), random_chain(5, types)))
+    batch = drawn(robot)
+    told = wrench_programs.physx(robot, batch)
+    assert {*told[1]} == {*robot.link_names}
+    assert agreeing(robot, batch, told, SINGLE) == only("isaaclab")
+
+
+@pytest.mark.simulators
+def test_newton() -> None:
+    """In float32; of `SolverFeatherstone`, which leaves the accelerations of the joints out."""
+    robot = tree(39)
+    batch = drawn(robot)
+    assert agreeing(robot, batch, wrench_programs.newton(robot, batch), SINGLE) == only("newton")
+
+
+@pytest.mark.simulators
+@pytest.mark.parametrize("name", ["branches", "fixed to the base"])
+def test_the_engine_of_gazebo(name: str) -> None:
+    """What it passes on is on the child, moment first; the sensor of gz-sensors puts the force first, and takes minus that."""
+    robot = ROBOTS[name]()
+    if any(not link.mass for link in robot.model.links):  # DART gives them 1 kg
+        robot = rttrr_pin.load(random_tree(30, 8, TREE, mimics=False))
+    batch = drawn(robot)
+    gazebo = convention("gazebo")
+    engine = (gazebo.axes, gazebo.point, "child", "moment")
+    assert gazebo.acts_on == "parent" and gazebo.first == "force"
+    assert agreeing(robot, batch, wrench_programs.dart(robot, batch)) == [engine]
 
 
 @pytest.mark.parametrize("batch_shape", [(), (3,), (2, 3), (0,)])

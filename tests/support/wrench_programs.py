@@ -6,6 +6,7 @@ others are left out. Programs that simulate are given a state, and find the acce
 
 from __future__ import annotations
 
+import tempfile
 import warnings
 from collections.abc import Iterator
 from typing import Any
@@ -126,7 +127,7 @@ def dart(robot: Robot, batch: Batch) -> Told:
     """Gazebo's engine: `getBodyForce`, the wrench that `GetTransmittedWrench` of gz-physics takes to the joint's frame."""
     import dartpy
 
-    skeleton = dartpy.io.DartLoader().parseSkeletonString(robot.model.urdf, "")
+    skeleton = dartpy.utils.DartLoader().parseSkeletonString(robot.model.urdf, "")
     skeleton.setGravity(np.array(robot.model.gravity))
     out = {name: np.empty((len(batch), 6)) for name in robot.link_names}
     for k in range(len(batch)):
@@ -178,3 +179,40 @@ def newton(robot: Robot, batch: Batch) -> Told:
         for name, x in out.items():
             x[k] = told[bodies.index(name)]
     return 0.0 * batch.a, out
+
+
+def physx(robot: Robot, batch: Batch) -> Told:
+    """Each state in a scene of its own, stepped once; the joints are free."""
+    import ovphysx
+    import ovstage
+    from ovphysx.samples.python_samples.schema_support import physx_schema_paths
+
+    from support.usd_robot import usd_of
+
+    ovstage.population.register_usd_schemas([*map(str, physx_schema_paths()), str(ovphysx.newton_schema_root())])
+    out = {name: np.empty((len(batch), 6)) for name in robot.link_names}
+    for k in range(len(batch)):
+        with tempfile.NamedTemporaryFile("w", suffix=".usda") as file:
+            file.write(usd_of(robot.model, batch.q[k], batch.v[k]))
+            file.flush()
+            stage = ovstage.Stage("robot")
+            ovstage.population.open_usd(stage, file.name, ordinal=1, domains=ovstage.PopulationDomain.ALL)
+        stage.advance_write_floor(ordinal=1).wait()
+        engine = ovphysx.PhysX()
+        engine.wait_task(engine.attach_ovstage(stage, read_ordinal=1))
+        engine.step_sync(1e-4)
+        numbers = _incoming(engine)
+        for i, name in enumerate(robot.link_names):
+            out[name][k] = numbers[1 + i]
+        engine.wait_task(engine.detach_ovstage())
+        engine.destroy()
+        stage.destroy()
+    return free_accelerations(robot, batch), out
+
+
+def _incoming(engine: Any) -> np.ndarray:
+    """The wrench of each link as PhysX has it, in a copy: its own arrays must be gone before the engine is."""
+    from ovphysx.types import ObjectScope, SimObjectType
+
+    with engine.read_sync(SimObjectType.ARTICULATION_LINK, ["linkIncomingJointForce"], scope=ObjectScope.ALL) as told:
+        return np.concatenate([np.array(group.tensors[0].numpy()) for group in told.groups if group.tensors])

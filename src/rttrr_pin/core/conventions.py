@@ -13,6 +13,13 @@ import numpy as np
 from rttrr_pin.core.arrays import Array, product
 from rttrr_pin.errors import UnknownNameError
 
+AXES = {"link": "axes of the child link", "base": "axes of the world"}
+POINTS = {
+    "origin": "the child link's origin",
+    "com": "the child link's centre of mass",
+    "tree": "the centre of mass of the tree of bodies",
+}
+
 
 @dataclass(frozen=True, slots=True)
 class Convention:
@@ -47,6 +54,17 @@ class Convention:
     verified: str
 
     @property
+    def words(self) -> str:
+        """Axes, point, on whom and order in one line."""
+        said = (
+            AXES[self.axes],
+            f"moment about {POINTS[self.point]}",
+            f"exerted on the {self.acts_on}",
+            f"{self.first} first",
+        )
+        return "; ".join(said)
+
+    @property
     def sign(self) -> float:
         """1 where it is f and n, -1 where it is minus them."""
         return 1.0 if self.acts_on == "child" else -1.0
@@ -63,7 +81,7 @@ class Convention:
             r: from the origin of {i} to the program's point, in the axes of the program, (..., 3) [m].
         """
         force, moment = product(R, f), product(R, n)
-        return self.sign * force, self.sign * (moment - np.cross(r, force))
+        return self.sign * force + 0.0, self.sign * (moment - np.cross(r, force)) + 0.0  # no zero has a minus
 
     def to_link(self, force: Array, moment: Array, R: Array, r: Array) -> tuple[Array, Array]:
         """Force f and moment n of what the program says, the inverse of `of_link`.

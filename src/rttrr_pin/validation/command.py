@@ -63,21 +63,27 @@ def validate(states: int, json: str | None, quiet: bool, full: bool, **run: Any)
 @click.command
 @robot()
 @click.option("--index", default=0, help="Which state: the number that `validate` prints.")
+@click.option("--convention", help="Show also what crosses each joint as another program says it, such as mujoco.")
 @programs
 @drawn
 @outcome
-def state(index: int, json: str | None, quiet: bool, **run: Any) -> int:
+def state(index: int, convention: str | None, json: str | None, quiet: bool, **run: Any) -> int:
     """Print one of the states of `validate` in full: every number, and who is right by interval arithmetic.
 
     Exit code: 0 agree, 1 disagree, 2 unusable input.
     """
     from rttrr_pin.validation.report import show_state
     from rttrr_pin.validation.state import compare_state
+    from rttrr_pin.validation.wrenches import show_wrenches, wrenches_of
 
     options = RunOptions(**run)
     report = compare_state(options.load(json), index, sampling=options.sampling, **options.chosen())
-    write_json(json, report.to_dict)
-    show_state(report, Output(quiet=quiet or json == "-", soft_wrap=False))
+    wrenches = None if convention is None else wrenches_of(report, convention)
+    write_json(json, lambda: report.to_dict() | ({} if wrenches is None else {"wrenches": wrenches.to_dict()}))
+    console = Output(quiet=quiet or json == "-", soft_wrap=False)
+    show_state(report, console)
+    if wrenches is not None:
+        show_wrenches(wrenches, console)
     return AGREE if report.passed else DISAGREE
 
 
