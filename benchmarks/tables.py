@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from common import machine_of, result
+from rttrr_pin.core.conventions import CONVENTIONS, POINTS
 
 TOP = Path(__file__).parents[1]
 
@@ -421,8 +422,37 @@ def vectors() -> Lines:
     ]
 
 
+def conventions() -> Lines:
+    header = ("program", "where", "axes", "moment about", "acts on", "first", "how we know")
+    return table(
+        header,
+        [
+            (
+                f"`{x.name}`<br>{x.program}",
+                x.quantity,
+                "child link" if x.axes == "link" else "world",
+                POINTS[x.point],
+                f"the {x.acts_on}",
+                x.first,
+                x.verified,
+            )
+            for x in CONVENTIONS
+        ],
+    )
+
+
+def convention_remarks() -> Lines:
+    def linked(source: str) -> str:
+        name = re.sub(r"#.*", "", source).rstrip("/").rpartition("/")[2] or source
+        return f"[{name}]({source})" if source.startswith("http") else source
+
+    rows = [(f"`{x.name}`", x.fixed, x.remark, ", ".join(map(linked, x.source))) for x in CONVENTIONS]
+    return table(("", "fixed joint", "mind that", "read"), rows)
+
+
 TABLES: dict[str, Callable[[], Lines]] = {
-    "agreement": agreement, "audit": audit, "bounds": bounds, "calls": calls, "cost": cost, "errors": errors,
+    "agreement": agreement, "audit": audit, "bounds": bounds, "calls": calls,
+    "convention remarks": convention_remarks, "conventions": conventions, "cost": cost, "errors": errors,
     "faults": faults,
     "installed size": installed_size, "joints": joints, "main path": main_path, "operations": operations,
     "peers": peers, "robots": robots, "speed": speed, "three numbers": three_numbers,

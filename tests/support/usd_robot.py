@@ -1,4 +1,7 @@
-"""A robot in a state as USD text, for PhysX: the frame on the child's side of each joint is that of the link."""
+"""A robot in a state as USD text, for PhysX.
+
+On the child's side each joint has a frame of its own, shifted along the axis, and turned so that the axis is x.
+"""
 
 from __future__ import annotations
 
@@ -14,11 +17,14 @@ from rttrr_pin.core.placements import in_base
 LEAST_MASS, LEAST_MOMENT = 1e-3, 1e-6
 """PhysX takes others for links without."""
 
+SHIFT = 0.2
+"""Of the joint's frame along its axis, from the origin of the child link [m]."""
+
 KINDS = {"revolute": "Revolute", "continuous": "Revolute", "prismatic": "Prismatic", "fixed": "Fixed"}
 
 
 def usd_of(model: Model, q: np.ndarray, v: np.ndarray) -> str:
-    """Axes are x, y or z; fixed, revolute and prismatic joints; the root is welded to the world."""
+    """Fixed, revolute and prismatic joints; the root is welded to the world."""
     R, p = (x[0] for x in in_base(model, q[None]))
     size = float(np.linalg.norm(model.gravity))
     bodies = [_body(Link("root", 1.0, np.zeros(3), np.eye(3)), np.eye(3), np.zeros(3))]
@@ -51,6 +57,14 @@ def Xform "robot" (prepend apiSchemas = ["PhysicsArticulationRootAPI", "PhysxArt
     }}
 {"".join(bodies)}{"".join(joints)}}}
 """
+
+
+def child_frame(joint: Joint) -> tuple[np.ndarray, np.ndarray]:
+    """`localRot1` as a matrix R and `localPos1`, p: they map from the joint's frame to that of the child link."""
+    x = np.array(joint.axis)
+    y = np.cross(np.eye(3)[np.abs(x).argmin()], x)
+    y /= np.linalg.norm(y)
+    return np.column_stack([x, y, np.cross(x, y)]), SHIFT * x
 
 
 def as_physx_has_it(link: Link) -> tuple[float, np.ndarray]:
@@ -88,24 +102,23 @@ def _body(link: Link, R: np.ndarray, p: np.ndarray) -> str:
 def _joint(joint: Joint, parent: str, child: str, *state: float) -> str:
     kind, schemas, moves = KINDS[joint.type.name], "", ""
     if state:
-        axis = np.array(joint.axis)
-        assert axis.max() == 1.0, "the axis is none of x, y, z"
         word, unit = ("angular", np.degrees(1.0)) if kind == "Revolute" else ("linear", 1.0)
         schemas = f'(prepend apiSchemas = ["PhysxJointAPI", "PhysicsJointStateAPI:{word}"])'
         moves = f"""
-        uniform token physics:axis = "{"XYZ"[int(axis.argmax())]}"
+        uniform token physics:axis = "X"
         float physxJoint:jointFriction = 0
         float physxJoint:maxJointVelocity = 1000000
         float state:{word}:physics:position = {state[0] * unit:.9g}
         float state:{word}:physics:velocity = {state[1] * unit:.9g}"""
+    R, p = child_frame(joint)
     return f"""
     def Physics{kind}Joint "{joint.name}" {schemas}
     {{
         rel physics:body0 = </robot/{parent}>
         rel physics:body1 = </robot/{child}>
-        point3f physics:localPos0 = {_tuple(joint.p)}
-        quatf physics:localRot0 = {_quaternion(joint.R)}
-        point3f physics:localPos1 = (0, 0, 0)
-        quatf physics:localRot1 = (1, 0, 0, 0){moves}
+        point3f physics:localPos0 = {_tuple(joint.p + joint.R @ p)}
+        quatf physics:localRot0 = {_quaternion(joint.R @ R)}
+        point3f physics:localPos1 = {_tuple(p)}
+        quatf physics:localRot1 = {_quaternion(R)}{moves}
     }}
 """

@@ -182,12 +182,15 @@ def newton(robot: Robot, batch: Batch) -> Told:
 
 
 def physx(robot: Robot, batch: Batch) -> Told:
-    """Each state in a scene of its own, stepped once; the joints are free."""
+    """Each state in a scene of its own, stepped once; the joints are free.
+
+    PhysX says it in the frame that the joint has on the child's side, from which it is taken to the link's here.
+    """
     import ovphysx
     import ovstage
     from ovphysx.samples.python_samples.schema_support import physx_schema_paths
 
-    from support.usd_robot import usd_of
+    from support.usd_robot import child_frame, usd_of
 
     ovstage.population.register_usd_schemas([*map(str, physx_schema_paths()), str(ovphysx.newton_schema_root())])
     out = {name: np.empty((len(batch), 6)) for name in robot.link_names}
@@ -203,7 +206,9 @@ def physx(robot: Robot, batch: Batch) -> Told:
         engine.step_sync(1e-4)
         numbers = _incoming(engine)
         for i, name in enumerate(robot.link_names):
-            out[name][k] = numbers[1 + i]
+            R, p = child_frame(robot.model.joints[i])
+            f, n = R @ numbers[1 + i, :3], R @ numbers[1 + i, 3:]
+            out[name][k] = np.r_[f, n + np.cross(p, f)]
         engine.wait_task(engine.detach_ovstage())
         engine.destroy()
         stage.destroy()
