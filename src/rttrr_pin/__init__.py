@@ -16,11 +16,13 @@ if TYPE_CHECKING:
     from rttrr_pin.auditing import audit as audit
     from rttrr_pin.auditing import read_publication as read_publication
     from rttrr_pin.compile import Kernel as Kernel
+    from rttrr_pin.core.conventions import Convention as Convention
     from rttrr_pin.core.identification import BaseParameters as BaseParameters
     from rttrr_pin.core.joint import Joint as Joint
     from rttrr_pin.core.joint import JointEffects as JointEffects
     from rttrr_pin.core.joint import Limits as Limits
     from rttrr_pin.core.joint import Mimic as Mimic
+    from rttrr_pin.core.joint_wrenches import JointWrenches as JointWrenches
     from rttrr_pin.core.model import Link as Link
     from rttrr_pin.core.model import Model as Model
     from rttrr_pin.core.payload import RandomPayload as RandomPayload
@@ -52,8 +54,10 @@ __getattr__, __dir__, __all__ = lazy(
     {
         "auditing": ("audit", "read_publication"),
         "compile": ("Kernel",),
+        "core.conventions": ("Convention",),
         "core.identification": ("BaseParameters",),
         "core.joint": ("Joint", "JointEffects", "Limits", "Mimic"),
+        "core.joint_wrenches": ("JointWrenches",),
         "core.model": ("Link", "Model"),
         "core.payload": ("RandomPayload",),
         "core.statics": ("WrenchEstimate",),

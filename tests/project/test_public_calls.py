@@ -90,6 +90,8 @@ def calls() -> dict[str, Call]:
         "with_locked": (robot.with_locked, {"joints": {"joint_1": 0.1}}),
         "a coordinate of with_locked": (lambda q: robot.with_locked({"joint_1": q}), {"q": 0.1}),
         "LinkWrenches": (robot.inverse_dynamics(**COORDINATES).at, {"name": "link_4"}),
+        "in_convention": (robot.inverse_dynamics(**COORDINATES).in_convention, {"name": "mujoco"}),
+        "JointWrenches": (robot.inverse_dynamics(**COORDINATES).in_convention("drake").at, {"link": "link_4"}),
         "Wrench": (
             lambda **wrench: robot.inverse_dynamics(**COORDINATES, payload=Wrench(**wrench)),
             {"force": (1, 2, 3), "moment": (0, 0, 0), "link": None, "expressed_in": "link"},
@@ -148,6 +150,7 @@ NAMES = (
     *("load", "load_all", "Robot", "inverse_dynamics", "enclose", "compile", "source", "Kernel", "mass_matrix"),
     *("nonlinear_effects", "gravity_torque", "regressor", "derivatives", "base_parameters", "jacobian"),
     *("wrench_torque", "WrenchEstimate", "with_joint_effects", "with_payload_body", "with_locked"),
+    *("in_convention", "JointWrenches"),
     *("LinkWrenches", "Wrench", "RandomPayload", "JointEffects", "Joint", "Limits", "Mimic", "Link", "Model"),
     *("validate", "compare_state", "search_worst_state", "check_laws", "inspect", "derive", "read_publication"),
     *("audit", "compare_robots", "sample_states", "diagnose", "diagnose_log"),
@@ -165,7 +168,16 @@ NAMES = (
 
 def test_every_public_function_is_called() -> None:
     """Protocols, results of other calls and errors apart; `validate_many` needs processes (`test_many.py`)."""
-    apart = {"Batch", "BaseParameters", "Enclosures", "Evaluation", "Implementation", "InputError", "RttrrError"}
+    apart = {
+        "Batch",
+        "BaseParameters",
+        "Convention",
+        "Enclosures",
+        "Evaluation",
+        "Implementation",
+        "InputError",
+        "RttrrError",
+    }
     assert {*NAMES} == {*calls()}
     assert {*rttrr_pin.__all__} - apart - {"__version__", "validate_many"} <= {*NAMES}
 

@@ -64,6 +64,7 @@ def objects() -> dict[str, Any]:
         "Kernel": robot.compile("tau"),
         "Wrench": rttrr_pin.Wrench((1, 2, 3)),
         "LinkWrenches": robot.inverse_dynamics(v, v, v),
+        "JointWrenches": robot.inverse_dynamics(v, v, v).in_convention("mujoco"),
         "Enclosures": robot.enclose(v, v, v),
         "BaseParameters": robot.base_parameters(),
         "WrenchEstimate": robot.wrench_from_torque(v, v),
@@ -89,8 +90,17 @@ def objects() -> dict[str, Any]:
 
 
 NAMES = (
-    *("Robot", "Model", "Joint", "Link", "Kernel", "Wrench", "LinkWrenches", "Enclosures", "BaseParameters"),
-    *("WrenchEstimate", "Batch", "Evaluation", "Validation", "Validation of nan", "StateReport", "StateReport of nan"),
+    *("Robot", "Model", "Joint", "Link", "Kernel", "Wrench", "LinkWrenches", "JointWrenches", "Enclosures"),
+    *(
+        "BaseParameters",
+        "WrenchEstimate",
+        "Batch",
+        "Evaluation",
+        "Validation",
+        "Validation of nan",
+        "StateReport",
+        "StateReport of nan",
+    ),
     *(
         "Sample",
         "WorstCase",
@@ -140,6 +150,7 @@ AS_DATA = (
     *("Validation", "Validation of nan", "StateReport", "StateReport of nan", "WorstCase", "LawReport", "Inspection"),
     *("Diagnosis", "Diagnosis of a cause", "LogDiagnosis"),
     *("Comparison", "Derivation", "Derivation in steps", "AuditResult", "Enclosures", "BaseParameters"),
+    "JointWrenches",
 )
 
 

@@ -148,7 +148,7 @@ CONVENTIONS = (
         acts_on="child",
         first="moment",
         fixed="a weld, with a wrench of its own",
-        remark="with the actuator's part along the axis; a discrete plant gives zeros until its first step",
+        remark="a discrete plant whose output ports are sampled gives zeros until its first step",
         source=(
             f"{GITHUB}/RobotLocomotion/drake/blob/be259df7/multibody/plant/multibody_plant.cc#L4458-L4556",
             "https://drake.mit.edu/doxygen_cxx/classdrake_1_1multibody_1_1_multibody_plant.html",
@@ -164,7 +164,7 @@ CONVENTIONS = (
         acts_on="child",
         first="force",
         fixed="a joint, with a wrench of its own, unless the importer merges it",
-        remark="{i} where the joint's `localPos1` and `localRot1` are zero, else that frame; the root has zeros",
+        remark="the frame is the joint's `localPos1`, `localRot1`: {i} where these are none; the root has zeros",
         source=(
             f"{GITHUB}/NVIDIA-Omniverse/PhysX/blob/a3d8a641/physx/include/PxArticulationReducedCoordinate.h#L313-L324",
             f"{GITHUB}/isaac-sim/IsaacLab/blob/main/source/isaaclab/isaaclab/sensors/joint_wrench/"
