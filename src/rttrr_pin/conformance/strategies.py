@@ -1,0 +1,251 @@
+"""Strategies of Hypothesis: robots, and states of one, that shrink to few links and round numbers.
+
+    @given(robots().flatmap(lambda robot: tuples(just(robot), states(robot))))
+    def test_inverse_dynamics(example):
+        robot, (q, v, a) = example
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+
+from rttrr_pin.core.arguments import choice, whole_number
+from rttrr_pin.core.arrays import Array
+from rttrr_pin.errors import InputError, UnknownNameError
+from rttrr_pin.loading import load
+from rttrr_pin.robot import Robot
+from rttrr_pin.validation.sampling import ACCELERATION, Ranges
+from rttrr_pin.validation.states import model_of
+
+if TYPE_CHECKING:
+    from hypothesis.strategies import SearchStrategy
+
+__all__ = ["TYPES", "State", "robots", "states"]
+
+TYPES = ("revolute", "prismatic", "continuous", "planar", "floating", "fixed")
+"""Types of joints, the simplest first."""
+
+FOLLOWING = ("revolute", "prismatic", "continuous")
+"""Types that may follow another by <mimic>."""
+
+MOST = 60
+"""Links of a robot."""
+
+REACH, TURN, HALF = 5, 31, 6
+"""Tenths: of positions [m], of angles [rad], of what a body extends to about its centre of mass [m sqrt(kg)]."""
+
+BALL = (1, 0, 1, 0, 0, 1)
+"""Tenths: the lower triangle of the simplest factor of second moments."""
+
+AXES = ((0, 0, 1), (1, 0, 0), (0, 1, 0))
+"""The simplest directions; others are of small whole numbers."""
+
+ENTRIES = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
+
+
+class State(NamedTuple):
+    """One state: coordinates (nq,) [rad or m], rates (nv,) and accelerations (nv,)."""
+
+    q: Array
+    v: Array
+    a: Array
+
+
+@dataclass(frozen=True, slots=True)
+class _Joint:
+    """What is drawn of a joint and its link; positions and angles in tenths.
+
+    Attributes:
+        kind: type of the joint.
+        back: how many links before the last one its parent is.
+        follows: the how-manieth last of the joints before it that it follows, where it can; 0 for none.
+        xyz: of the origin.
+        rpy: of the origin.
+        axis: small whole numbers.
+        body: mass, centre of mass, and a factor of the second moments of the link.
+    """
+
+    kind: str
+    back: int
+    follows: int
+    xyz: Sequence[int]
+    rpy: Sequence[int]
+    axis: Sequence[int]
+    body: _Body
+
+
+@dataclass(frozen=True, slots=True)
+class _Body:
+    """Tenths: mass [kg], centre of mass [m], and lower triangle L of second moments L L^T about it [m sqrt(kg)]."""
+
+    mass: int
+    com: Sequence[int]
+    factor: Sequence[int]
+
+
+def robots(
+    most_links: int = 6,
+    types: Sequence[str] = TYPES,
+    trees: bool = True,
+    mimic: bool = True,
+    base: Literal["fixed", "floating"] = "fixed",
+) -> SearchStrategy[Robot]:
+    """Robots, each read from the text of a URDF that Hypothesis shows with a failing example.
+
+    Every inertia is that of a possible body. The simplest robot has one link on one joint of the first of the types, and
+    numbers of few digits.
+
+    Args:
+        most_links: how many links there are at most, besides the base.
+        types: of joints, some of `TYPES`, the simplest first.
+        trees: whether links may carry several others; else each carries one.
+        mimic: whether joints may follow others.
+        base: "fixed" or "floating", as in `load`.
+
+    Raises:
+        InputError: an argument cannot be used, or hypothesis is not installed.
+        UnknownNameError: there is no such type of joint.
+    """
+    st = _strategies()
+    most = whole_number("most_links", most_links, 1, MOST, str(MOST))
+    choice("base", base, "fixed", "floating")
+    own = [types] if isinstance(types, str) else list(types)
+    for kind in own:
+        if kind not in TYPES:
+            raise UnknownNameError("type of joint", kind, TYPES)
+    if base == "fixed" and not set(own) - {"fixed"}:
+        raise InputError(f"types are {own}: expected at least one that moves, such as 'revolute'")
+    body = st.builds(
+        _Body,
+        st.integers(-9, 40).map(lambda k: 10 + k),
+        _tenths(REACH),
+        st.just(BALL) | st.tuples(*(st.integers(1 if own else -HALF, HALF) for own in BALL)),
+    )
+    joints = st.builds(
+        _Joint,
+        st.sampled_from(own),
+        st.integers(0, most if trees else 0),
+        st.integers(0, most if mimic else 0),
+        _tenths(REACH),
+        _tenths(TURN),
+        st.sampled_from(AXES) | st.tuples(*[st.integers(-2, 2)] * 3).filter(any),
+        body,
+    )
+    chains = st.lists(joints, min_size=1, max_size=most).filter(lambda all: base == "floating" or _moves(all))
+    roots = body if base == "floating" else st.none()
+    return st.builds(lambda root, chain: _robot(root, chain, base), roots, chains)
+
+
+def states(robot: Robot) -> SearchStrategy[State]:
+    """States of a robot within the limits of its file, in round numbers: q, v, a, to be called as f(*state).
+
+    Coordinates and rates are within the limits of the file; where it has none, within half a turn and half a turn per
+    second [m, m/s]. The simplest state is at zero, or as near to it as the limits allow, and at rest.
+
+    Raises:
+        InputError: the robot has no joint, or hypothesis is not installed.
+    """
+    st = _strategies()
+    model = model_of(robot, "there is nothing to draw")
+    ranges = Ranges.of(model)
+
+    def made(q: Sequence[float], v: Sequence[float], a: Sequence[float]) -> State:
+        return State(model.coordinates_at(np.array([q], dtype=float))[0], np.array(v, float), np.array(a, float))
+
+    acceleration = np.full(model.nv, ACCELERATION)
+    pairs = ((ranges.lower, ranges.upper), (-ranges.rate, ranges.rate), (-acceleration, acceleration))
+    return st.builds(made, *(_numbers(*pair) for pair in pairs))
+
+
+def _strategies() -> Any:
+    """The module of Hypothesis."""
+    try:
+        from hypothesis import strategies
+    except ImportError as error:
+        raise InputError(
+            "strategies need the package 'hypothesis', which is not installed: pip install 'rttrr-pin[hypothesis]'"
+        ) from error
+    return strategies
+
+
+def _tenths(most: int) -> Any:
+    """Three numbers; most often zero, to which all three shrink at once."""
+    st = _strategies()
+    return st.just((0, 0, 0)) | st.tuples(*[st.integers(-most, most)] * 3)
+
+
+def _numbers(lower: Array, upper: Array) -> Any:
+    """A number for each degree of freedom; the simplest are all one, so that a robot with one joint less can have them."""
+    st, pairs = _strategies(), list(zip(lower.tolist(), upper.tolist(), strict=True))
+    common = float(lower.max()), float(upper.min())
+    several = st.tuples(*(_round(*pair) for pair in pairs))
+    if common[0] > common[1]:
+        return several
+    return _round(*common).map(lambda x: (x,) * len(pairs)) | several
+
+
+def _round(lower: float, upper: float) -> SearchStrategy[float]:
+    """Numbers of few digits within a range, those near zero the simplest; its lower end where there is none."""
+    st, digits = _strategies(), 1
+    if upper > lower:
+        digits = max(1, 2 - math.floor(math.log10(upper - lower)))
+    scale = 10**digits
+    first, last = math.ceil(lower * scale), math.floor(upper * scale)
+    return st.integers(first, last).map(lambda k: k / scale) if first <= last else st.just(lower)  # type: ignore[no-any-return]
+
+
+def _moves(joints: Sequence[_Joint]) -> bool:
+    return any(own.kind != "fixed" for own in joints)
+
+
+def _robot(root: _Body | None, joints: Sequence[_Joint], base: Literal["fixed", "floating"]) -> Robot:
+    """The robot of what was drawn; a failing example shows its text."""
+    text = _urdf(root, joints)
+    from hypothesis import currently_in_test_context, note
+
+    if currently_in_test_context():
+        note(text)
+    return load(text, base=base)
+
+
+def _urdf(root: _Body | None, joints: Sequence[_Joint]) -> str:
+    lines = ['<robot name="drawn">', f'  <link name="base">{"" if root is None else _inertial(root)}</link>']
+    lead: list[int] = []
+    for i, own in enumerate(joints):
+        parent = f"link_{max(i - 1 - own.back, -1) + 1}" if i > own.back else "base"
+        leader = lead[-own.follows] if own.kind in FOLLOWING and 0 < own.follows <= len(lead) else None
+        lines += [f'  <link name="link_{i + 1}">{_inertial(own.body)}</link>', *_joint(i, own, parent, leader)]
+        if own.kind in FOLLOWING and leader is None:
+            lead.append(i)
+    return "\n".join([*lines, "</robot>"])
+
+
+def _inertial(body: _Body) -> str:
+    """Second moments L L^T are those of a possible body; the tensor is their trace times 1, less them."""
+    L = np.zeros((3, 3), dtype=np.int64)
+    L[np.tril_indices(3)] = body.factor
+    moments = L @ L.T
+    tensor = np.trace(moments) * np.eye(3, dtype=np.int64) - moments
+    entries = " ".join(f'{name}="{tensor[at] / 100:g}"' for name, at in ENTRIES.items())
+    origin = f'<origin xyz="{_decimals(body.com)}"/>' if any(body.com) else ""
+    return f'<inertial>{origin}<mass value="{body.mass / 10:g}"/><inertia {entries}/></inertial>'
+
+
+def _joint(i: int, own: _Joint, parent: str, leader: int | None) -> list[str]:
+    names = f'<parent link="{parent}"/><child link="link_{i + 1}"/>'
+    origin = f'<origin xyz="{_decimals(own.xyz)}" rpy="{_decimals(own.rpy)}"/>' if any((*own.xyz, *own.rpy)) else ""
+    moves = ""
+    if own.kind not in ("fixed", "floating"):
+        axis = AXES[0] if own.kind == "planar" else own.axis
+        moves = f'<axis xyz="{" ".join(map(str, axis))}"/><limit lower="-2" upper="2" velocity="3" effort="10"/>'
+    mimic = "" if leader is None else f'<mimic joint="joint_{leader + 1}" multiplier="-2" offset="0.5"/>'
+    return [f'  <joint name="joint_{i + 1}" type="{own.kind}">{names}{origin}{moves}{mimic}</joint>']
+
+
+def _decimals(tenths: Sequence[int]) -> str:
+    return " ".join(f"{k / 10:g}" for k in tenths)

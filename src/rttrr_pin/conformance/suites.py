@@ -1,0 +1,122 @@
+"""A suite of tests as data: at which states, to which tolerance, a program is compared with right results."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from rttrr_pin.conformance.levels import LEVELS, MOST
+from rttrr_pin.conformance.mutants import Mutants, results
+from rttrr_pin.core.arguments import names_of, not_negative, whole_number
+from rttrr_pin.core.model import Model
+from rttrr_pin.core.wrench import QUANTITIES
+from rttrr_pin.diagnosis.evidence import flat, joined, loaded, shape_of_loads, spread
+from rttrr_pin.errors import InputError, UnknownNameError
+from rttrr_pin.implementations import Batch, default_allowance
+from rttrr_pin.validation.sampling import Ranges
+
+KINDS = {
+    "gravity": "gravity",
+    "rates": "rates",
+    "random": "accelerations",
+    "payload": "payload",
+    "fast": "fast",
+    "cancelling": "cancelling",
+}
+"""Kinds of states, and the levels that they are those of."""
+
+
+@dataclass(frozen=True, slots=True)
+class Tolerances:
+    """A suite of tests as data: |result - right one| <= atol + rtol |right one|, number by number.
+
+    Attributes:
+        states: kinds of states, some of `KINDS`: "gravity" at rest, "rates" without accelerations, "random" all of q,
+            v and a, "payload" with a wrench at the last link, "fast" at 300 rad/s, "cancelling" where all terms of a
+            driving force add up to nearly nothing.
+        n_states: how many of each kind.
+        atol: absolute tolerance [N or N m]; None for the rounding tolerance of `validate`, whatever `rtol` is.
+        rtol: relative tolerance.
+        quantities: what is compared, of tau, F, N, f, n.
+        rates: the largest rate [rad/s or m/s]; None for the limits of the robot.
+        seed: of the states.
+    """
+
+    states: tuple[str, ...] = ("random",)
+    n_states: int = 10
+    atol: float | None = 1e-6
+    rtol: float = 0.0
+    quantities: tuple[str, ...] = ("tau",)
+    rates: float | None = None
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        """Check what was passed.
+
+        Raises:
+            InputError: a number cannot be used.
+            UnknownNameError: there is no such kind of states or quantity.
+        """
+        for argument, known in (("states", tuple(KINDS)), ("quantities", QUANTITIES)):
+            own = names_of(argument, getattr(self, argument))
+            object.__setattr__(self, argument, own)
+            if not own:
+                raise InputError(f"{argument} is empty: name at least one of {', '.join(known)}")
+            for name in own:
+                if name not in known:
+                    raise UnknownNameError("kind of states" if argument == "states" else "quantity", name, known)
+        whole_number("n_states", self.n_states, 1, MOST, "10^6", "-n")
+        whole_number("seed", self.seed, 0, 2**128 - 1, "2^128 - 1", "--seed")
+        for argument in ("atol", "rtol", "rates"):
+            if getattr(self, argument) is not None:
+                not_negative(argument, getattr(self, argument))
+
+    @property
+    def payload(self) -> bool:
+        """Whether some of the states have one."""
+        return "payload" in self.states
+
+    @property
+    def sentence(self) -> str:
+        """What is compared."""
+        states = ", ".join(f"{self.n_states:,} {kind}" for kind in self.states)
+        slow = "" if self.rates is None else f" at up to {self.rates:g} rad/s"
+        relative = f" + {self.rtol:g} of it" if self.rtol and self.atol else f"{self.rtol:g} of it"
+        tolerance = f"{self.atol:g}" if self.atol else ""
+        bound = "rounding" if self.atol is None else (tolerance + (relative if self.rtol else "")) or "0"
+        return f"{', '.join(self.quantities)} within {bound} at {states} states{slow}"
+
+    def batches(self, model: Model) -> list[Batch]:
+        """The states of a robot, those with a payload apart."""
+        levels = {level.id: level for level in LEVELS}
+        found: dict[object, list[Batch]] = {}
+        for kind in dict.fromkeys(self.states):
+            batch = levels[KINDS[kind]].states(model, self.n_states, self.seed)
+            if self.rates is not None and kind != "gravity":
+                batch = replace(batch, v=batch.v * (self.rates / Ranges.of(model).rate))
+            found.setdefault(shape_of_loads(batch) if loaded(batch).any() else (), []).append(batch)
+        return [joined(batches) for batches in found.values()]
+
+    def sees(self, mutants: Mutants) -> Iterator[bool]:
+        """Of each mutant whether a test would fail on it."""
+        keys = self.quantities
+        tried = [(own.hypothesis, own.numbers) for own in mutants.found]
+        seen = np.zeros(len(tried), dtype=bool)
+        for batch in self.batches(mutants.robot.model):
+            expected = flat(dict(batch.recursion[0].items()), keys)
+            if self.atol is None:
+                allowed = 2.0 * spread(default_allowance(batch), keys)
+            else:
+                allowed = self.atol + self.rtol * np.abs(expected)
+            for k, values in enumerate(results(mutants.robot, tried, batch)):
+                with np.errstate(invalid="ignore", over="ignore"):
+                    seen[k] |= not (np.abs(flat(values, keys) - expected) <= allowed).all()
+        return iter(seen.tolist())
+
+
+def whole(suites: Sequence[Tolerances]) -> tuple[tuple[str, ...], bool]:
+    """The quantities that several suites compare, and whether any has a payload."""
+    keys = {key for own in suites for key in own.quantities}
+    return tuple(key for key in QUANTITIES if key in keys), any(own.payload for own in suites)
