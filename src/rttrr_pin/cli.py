@@ -29,6 +29,7 @@ COMMANDS = {
     "laws": "rttrr_pin.laws.command:laws",
     "conform": "rttrr_pin.conformance.command:conform",
     "vectors": "rttrr_pin.conformance.vectors_command:vectors",
+    "mutate": "rttrr_pin.conformance.mutate_command:mutate",
     "compare": "rttrr_pin.diagnosis.compare_command:compare",
     "audit": "rttrr_pin.auditing.command:audit",
     "derive": "rttrr_pin.derivation.command:derive",

@@ -16,13 +16,13 @@ from rttrr_pin.core.arguments import not_negative
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.payload import RandomPayload
 from rttrr_pin.core.wrench import QUANTITIES
-from rttrr_pin.diagnosis.evidence import flat, places, rms, spread
-from rttrr_pin.diagnosis.hypothesis import Hypothesis
+from rttrr_pin.diagnosis.engine.evidence import flat, places, rms, spread
+from rttrr_pin.diagnosis.variants.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.run import hypotheses_of
-from rttrr_pin.diagnosis.side_by_side import evaluate_all
-from rttrr_pin.diagnosis.simultaneous import together
+from rttrr_pin.diagnosis.engine.side_by_side import evaluate_all
+from rttrr_pin.diagnosis.engine.simultaneous import together
 from rttrr_pin.diagnosis.states import sample_states
-from rttrr_pin.diagnosis.variant import Values, Variant
+from rttrr_pin.diagnosis.variants.variant import Values, Variant
 from rttrr_pin.implementations import Batch, default_allowance
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.compare import labels, ratio
@@ -45,6 +45,7 @@ class Mutant:
     """Wrong dynamics of a robot.
 
     Attributes:
+        index: of the hypothesis in the catalogue of the robot.
         hypothesis: what is wrong.
         numbers: those that it has where they may be any.
         others: hypotheses that give the same results.
@@ -55,6 +56,7 @@ class Mutant:
         relative: and so much of the root mean square of what is expected.
     """
 
+    index: int
     hypothesis: Hypothesis
     numbers: tuple[float, ...]
     others: tuple[Hypothesis, ...]
@@ -63,10 +65,6 @@ class Mutant:
     change: float
     unit: str
     relative: float
-
-    def variant(self, robot: Robot) -> Variant:
-        """The program."""
-        return self.hypothesis.apply(Variant(robot.model), self.numbers)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -118,7 +116,7 @@ def mutants(
     units = [(key, at, unit) for key, at, unit in labels(robot.model) if key in keys]
     named = {(key, at): unit for key, at, unit in units}
     columns = places(robot.model, keys)
-    for (own, numbers), values in zip(tried, results(robot, tried, batch), strict=True):
+    for index, ((own, numbers), values) in enumerate(zip(tried, results(robot, tried, batch), strict=True)):
         with np.errstate(all="ignore"):
             change = np.abs(flat(values, keys) - expected)
             seen = ~(change <= least)
@@ -130,7 +128,7 @@ def mutants(
         k, column = np.unravel_index(int(np.argmax(finite)), finite.shape)
         key, at = columns[int(column)]
         kept.append(
-            Mutant(own, numbers, (), key, at, float(change[k, column]), named[key, at], float(finite[k, column]))
+            Mutant(index, own, numbers, (), key, at, float(change[k, column]), named[key, at], float(finite[k, column]))
         )
     distinct = _distinct(kept, np.array(marks).reshape(-1, PROJECTIONS))
     return Mutants(robot, keys, tuple(distinct), len(tried) - len(kept))

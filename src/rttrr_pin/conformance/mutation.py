@@ -11,7 +11,7 @@ from rttrr_pin.conformance.mutants import SIZE, Mutant, Mutants, as_data, mutant
 from rttrr_pin.conformance.suites import Tolerances
 from rttrr_pin.core.arguments import whole_number
 from rttrr_pin.errors import InputError
-from rttrr_pin.reporting.results import Summarised, counted, finite
+from rttrr_pin.reporting.results import Summarised, finite
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.states import model_of
 
@@ -170,8 +170,3 @@ def grouped(passing: Sequence[Mutant]) -> list[list[Mutant]]:
     for own in passing:
         found.setdefault(own.hypothesis.id, []).append(own)
     return list(found.values())
-
-
-def told(passing: int, total: int) -> str:
-    """Such as `3 of 900 wrong dynamics pass`."""
-    return f"{passing:,} of {counted(total, 'wrong dynamics').removesuffix('s')} pass"

@@ -12,7 +12,7 @@ from rttrr_pin.conformance.mutants import Mutants, results
 from rttrr_pin.core.arguments import names_of, not_negative, whole_number
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.wrench import QUANTITIES
-from rttrr_pin.diagnosis.evidence import flat, joined, loaded, shape_of_loads, spread
+from rttrr_pin.diagnosis.engine.evidence import flat, joined, loaded, shape_of_loads, spread
 from rttrr_pin.errors import InputError, UnknownNameError
 from rttrr_pin.implementations import Batch, default_allowance
 from rttrr_pin.validation.sampling import Ranges
