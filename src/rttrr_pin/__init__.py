@@ -3,6 +3,8 @@
 >>> import rttrr_pin
 >>> robot = rttrr_pin.load("rttrr")
 >>> tau = robot.inverse_dynamics(q=[0, 0, 0, 0, 0], v=[0, 0, 0, 0, 0], a=[0, 0, 0, 0, 0]).tau
+
+PYTEST_DONT_REWRITE: it has no assertions, and pytest, which loads our plugin, would warn where it is loaded before.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What a failing test says: what is wrong, by how much and where; the cause, its repair, and a state as a test to paste."""
+"""What a failing test says: what is wrong, where and by how much; the cause, its repair, and a test to paste."""
 
 from __future__ import annotations
 
@@ -12,6 +12,7 @@ from rttrr_pin.conformance.judge import Wanted, judge
 from rttrr_pin.conformance.levels import LEVELS, Case, Level, cases
 from rttrr_pin.conformance.results import LevelResult
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.batch import batch_shape
 from rttrr_pin.core.inputs import check_quaternions, coordinates
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import RandomPayload
@@ -91,7 +92,7 @@ def _given(robot: Robot, states: Sequence[Any]) -> Case:
 
 def _rows(*arrays: Array) -> list[Array]:
     """As many rows in each."""
-    rows = np.broadcast_shapes(*(x.shape[:-1] for x in arrays))
+    rows = batch_shape(arrays, ())
     return [np.broadcast_to(x, (*rows, x.shape[-1])).reshape(-1, x.shape[-1]) for x in arrays]
 
 
@@ -135,7 +136,7 @@ def _state(case: Case, result: LevelResult) -> str:
     """The worst state, to be asked again."""
     assert result.worst is not None
     k, batch = result.worst[1].state, case.batch
-    numbers = ", ".join(f"{name}={getattr(batch, name)[k].tolist()}" for name in "qva")
+    numbers = ", ".join(f"{name}={(getattr(batch, name)[k] + 0.0).tolist()}" for name in "qva")
     loads = "".join(
         f", payload at {batch.model.link_names[own.link]}: f={_row(own.f, k)}, n={_row(own.n, k)}"
         for own in batch.loads

@@ -85,8 +85,10 @@ class Check:
         return f"{self.general_id}-{self.name}"
 
     def __call__(self, subject: Source) -> None:
-        """Run it on a program, all that `validate` takes: a function f(q, v, a) of `robot`, or one of the model that
-        makes it; the test is skipped where the program does not offer what is asked.
+        """Run it on a program; the test is skipped where that does not offer what is asked.
+
+        Args:
+            subject: all that `validate` takes: a function f(q, v, a) of `robot`, or one of the `Model` that makes it.
 
         Raises:
             AssertionError: the program is wrong; the message says why.
@@ -147,7 +149,12 @@ def _law(law: Law, name: str, robot: Robot, options: Options) -> Check:
             raise AssertionError(_with_reason(line, subject, program, robot, options))
         return ""
 
-    return Check(f"rttrr-law-{'-'.join(re.findall(r'[a-z]+', law.name.lower().replace(chr(39), '')))}", name, robot, run)
+    return Check(f"rttrr-law-{_words(law.name)}", name, robot, run)
+
+
+def _words(name: str) -> str:
+    """A name as a part of an id."""
+    return "-".join(re.findall(r"[a-z]+", name.lower().replace("'", "")))
 
 
 def _reference(reference: str, name: str, robot: Robot, options: Options) -> Check:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -17,11 +18,11 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.payload import RandomPayload
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.diagnosis.engine.evidence import flat, places, rms, spread
-from rttrr_pin.diagnosis.variants.hypothesis import Hypothesis
-from rttrr_pin.diagnosis.run import hypotheses_of
 from rttrr_pin.diagnosis.engine.side_by_side import evaluate_all
 from rttrr_pin.diagnosis.engine.simultaneous import together
+from rttrr_pin.diagnosis.run import hypotheses_of
 from rttrr_pin.diagnosis.states import sample_states
+from rttrr_pin.diagnosis.variants.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.variants.variant import Values, Variant
 from rttrr_pin.implementations import Batch, default_allowance
 from rttrr_pin.robot import Robot
@@ -104,7 +105,12 @@ def mutants(
         seed: of the states.
     """
     keys = tuple(key for key in QUANTITIES if key in quantities)
-    size = not_negative("size", size)
+    return _mutants(robot, keys, payload, not_negative("size", size), seed)
+
+
+@lru_cache(maxsize=4)
+def _mutants(robot: Robot, keys: tuple[str, ...], payload: bool, size: float, seed: int) -> Mutants:
+    """Those of the last calls are kept: several suites are compared on one robot."""
     batch = sample_states(robot, TELLING, seed, RandomPayload() if payload else None).states
     tried = [(own, planted(own, size)) for own in hypotheses_of(robot.model)]
     expected = flat(dict(batch.recursion[0].items()), keys)

@@ -16,9 +16,7 @@ KINDS = ("gravity", "rates", "random", "payload", "fast", "cancelling")
 
 @click.command
 @robot()
-@click.option(
-    "--states", multiple=True, default=("random",), metavar="KIND", help=f"Of {', '.join(KINDS)}. Repeats."
-)
+@click.option("--states", multiple=True, default=("random",), metavar="KIND", help=f"Of {', '.join(KINDS)}. Repeats.")
 @click.option("-n", "count", default=10, help="How many states of each kind.")
 @click.option("--atol", default="1e-6", metavar="NUMBER", help="Absolute tolerance [N, N m]; or rounding.")
 @click.option("--rtol", default=0.0, help="Relative tolerance, of the right result.")

@@ -1,6 +1,7 @@
 """The plugin for pytest, which loads nothing of this package until a test asks for checks.
 
-It is registered under the name of this module, so that `-p rttrr_pin.conformance.pytest_plugin` loads it no second time.
+It is registered by the name of this module, so that `-p rttrr_pin.conformance.pytest_plugin` loads it no second time.
+PYTEST_DONT_REWRITE: it has no assertions, and a run of pytest in a process that has loaded it would warn.
 """
 
 from __future__ import annotations
@@ -93,7 +94,9 @@ def _parametrize(
     from rttrr_pin.errors import RttrrError
 
     if "check" not in metafunc.fixturenames:
-        raise pytest.UsageError(f"{metafunc.definition.nodeid} takes no `check`: def test_it(check): check(my_function)")
+        raise pytest.UsageError(
+            f"{metafunc.definition.nodeid} takes no `check`: def test_it(check): check(my_function)"
+        )
     expected = dict(expected_failures or {})
     names = [name for name in ("check", "robot") if name in metafunc.fixturenames]
     try:

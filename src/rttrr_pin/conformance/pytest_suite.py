@@ -100,15 +100,16 @@ class PytestSuite:
         module = "rttrr_pin.conformance.suite_run"
         words = [sys.executable, "-m", "pytest", "-p", module, "--rttrr-mutation-job", str(job), *self.arguments]
         words += ["-p", "no:cacheprovider", *(["-n0"] if _has_xdist() else [])]
-        with printed.open("wb") as out, subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=out, stderr=out) as child:
-            try:
-                while child.poll() is None:
-                    time.sleep(POLL)
-                    if self.progress is not None:
-                        self.progress(done.read_bytes().count(b"\n"))
-            except BaseException:
-                child.kill()
-                raise
+        with printed.open("wb") as out:
+            child = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=out, stderr=out)
+        try:
+            while child.poll() is None:
+                time.sleep(POLL)
+                if self.progress is not None:
+                    self.progress(done.read_bytes().count(b"\n"))
+        finally:
+            child.kill()
+            child.wait()
 
 
 def _has_xdist() -> bool:
@@ -129,8 +130,8 @@ def _outcomes(done: Path, printed: Path, count: int, suite: PytestSuite) -> list
     failed = lines[0]["failed"] if lines else []
     if failed:
         raise ImplementationError(
-            f"{suite.sentence}: {len(failed)} of its tests fail with right dynamics of this robot in place of yours, so "
-            f"that a failure says nothing: leave them out by -k or --deselect\n  {listed(failed, 5, chr(10) + '  ')}"
+            f"{suite.sentence}: {len(failed)} of its tests fail with right dynamics of this robot in place of yours, "
+            f"so that a failure says nothing: leave them out by -k or --deselect\n  {listed(failed, 5, chr(10) + '  ')}"
         )
     if len(lines) != count + 1:
         text = printed.read_text(errors="replace").strip()

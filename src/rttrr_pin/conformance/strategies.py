@@ -1,8 +1,6 @@
 """Strategies of Hypothesis: robots, and states of one, that shrink to few links and round numbers.
 
-    @given(robots().flatmap(lambda robot: tuples(just(robot), states(robot))))
-    def test_inverse_dynamics(example):
-        robot, (q, v, a) = example
+`robots().flatmap(lambda robot: tuples(just(robot), states(robot)))` draws both, for a test that takes the pair.
 """
 
 from __future__ import annotations
@@ -97,8 +95,8 @@ def robots(
 ) -> SearchStrategy[Robot]:
     """Robots, each read from the text of a URDF that Hypothesis shows with a failing example.
 
-    Every inertia is that of a possible body. The simplest robot has one link on one joint of the first of the types, and
-    numbers of few digits.
+    Every inertia is that of a possible body. The simplest robot has one link on one joint of the first of the types,
+    and numbers of few digits.
 
     Args:
         most_links: how many links there are at most, besides the base.
@@ -180,7 +178,7 @@ def _tenths(most: int) -> Any:
 
 
 def _numbers(lower: Array, upper: Array) -> Any:
-    """A number for each degree of freedom; the simplest are all one, so that a robot with one joint less can have them."""
+    """A number for each degree of freedom; simplest where all are one, which a robot with fewer joints can have too."""
     st, pairs = _strategies(), list(zip(lower.tolist(), upper.tolist(), strict=True))
     common = float(lower.max()), float(upper.min())
     several = st.tuples(*(_round(*pair) for pair in pairs))

@@ -42,7 +42,7 @@ class Program:
         self.variant, self.quantities, self.calls = variant, quantities, 0
 
     def __call__(self, q: Any, v: Any, a: Any) -> Any:
-        """tau of the shape of v; or several quantities by name."""
+        """The driving forces, of the shape of v; or several quantities by name."""
         self.calls += 1
         arrays = [np.array(x, dtype=np.float64) for x in (q, v, a)]
         model, shape = self.variant.model, arrays[1].shape[:-1]
