@@ -373,6 +373,50 @@ def installed_size() -> Lines:
     return table(["installed", "package", "MB", "MB with what it alone brings", "packages"], rows)
 
 
+SUITES = {
+    "adam": "one random state, rates of up to 2.5; at rest; unit accelerations; 1e-4, as adam's `test_jax.py` of bias "
+    "force, gravity and mass matrix",
+    "mujoco_warp": "one random state, rates of up to 0.01; 5e-3 + 5e-3 of it, as MuJoCo Warp's `inverse_test.py`",
+    "gravity": "ten poses at rest; 1e-6",
+    "loose": "ten random states; 1e-2",
+    "usual": "ten random states; 1e-6",
+    "rounding": "a hundred random states; what rounding explains, as `rttrr-pin validate`",
+}
+"""By name, what a suite of benchmarks/mutation_scores.py compares."""
+
+
+def mutation_scores() -> Lines:
+    """What each suite lets pass, on each robot."""
+    data = result("mutation_scores")
+    suites = data["suites"]
+    rows = [(said, *(_passing(x) for x in suites[name]["robots"].values())) for name, said in SUITES.items()]
+    robots = [f"{robot}, of {x['10 %']['mutants']:,}" for robot, x in suites["adam"]["robots"].items()]
+    return [
+        "Wrong dynamics that pass, where numbers that may be any are 10 % wrong (in parentheses: 1 %), tau alone "
+        "(`python benchmarks/mutation_scores.py`):",
+        "",
+        *table(["states and tolerance [N, N m]", *robots], rows),
+    ]
+
+
+def _passing(by_size: dict[str, Any]) -> str:
+    large, small = (by_size[size] for size in ("10 %", "1 %"))
+    return (
+        f"{large['passing']:,}, {large['passing'] / large['mutants']:.0%} ({small['passing'] / small['mutants']:.0%})"
+    )
+
+
+def kit() -> Lines:
+    """Time of the kit."""
+    data = result("kit_time")
+    low, median, high = data["seconds"]
+    count = data["checks"]["passed"]
+    return [
+        f"All checks of a plain NumPy function on RTTRR ({count} of them, {data['states']} states each), start of pytest "
+        f"included: **{median:.1f} s** ({low:.1f} to {high:.1f} s; {measured(data, 'kit_time')})."
+    ]
+
+
 def three_numbers() -> Lines:
     """What the README claims, each with the page that has all of it."""
     million, all_robots, fast = result("agreement"), result("example_robots"), result("kernel_speed")
@@ -453,8 +497,8 @@ def convention_remarks() -> Lines:
 TABLES: dict[str, Callable[[], Lines]] = {
     "agreement": agreement, "audit": audit, "bounds": bounds, "calls": calls,
     "convention remarks": convention_remarks, "conventions": conventions, "cost": cost, "errors": errors,
-    "faults": faults,
-    "installed size": installed_size, "joints": joints, "main path": main_path, "operations": operations,
+    "faults": faults, "installed size": installed_size, "joints": joints, "kit": kit, "main path": main_path,
+    "mutation scores": mutation_scores, "operations": operations,
     "peers": peers, "robots": robots, "speed": speed, "three numbers": three_numbers,
     "vectors": vectors,
 }  # fmt: skip

@@ -79,7 +79,7 @@ def test_own_states_are_asked_alone(robot: Robot, wrong: Any) -> None:
 
 def test_states_come_by_joint_name_too(robot: Robot, right: Any) -> None:
     names = robot.model.v_names
-    state = {name: 0.5 for name in names}
+    state = dict.fromkeys(names, 0.5)
     assert_inverse_dynamics(right, robot, states=(state, state, state))
     with pytest.raises(MissingJointError):
         assert_inverse_dynamics(right, robot, states=({names[0]: 1.0}, state, state))

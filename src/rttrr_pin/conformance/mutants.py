@@ -108,7 +108,7 @@ def mutants(
     return _mutants(robot, keys, payload, not_negative("size", size), seed)
 
 
-@lru_cache(maxsize=4)
+@lru_cache(maxsize=8)
 def _mutants(robot: Robot, keys: tuple[str, ...], payload: bool, size: float, seed: int) -> Mutants:
     """Those of the last calls are kept: several suites are compared on one robot."""
     batch = sample_states(robot, TELLING, seed, RandomPayload() if payload else None).states

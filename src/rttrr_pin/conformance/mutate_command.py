@@ -11,7 +11,7 @@ from rttrr_pin.reporting.options import base, flag, friction, gravity, outcome, 
 from rttrr_pin.reporting.output import AGREE, DISAGREE, Output, progress, write_json
 from rttrr_pin.validation.options import RunOptions
 
-KINDS = ("gravity", "rates", "random", "payload", "fast", "cancelling")
+KINDS = ("gravity", "rates", "random", "payload", "fast", "cancelling", "units")
 
 
 @click.command

@@ -100,8 +100,10 @@ class PytestSuite:
         module = "rttrr_pin.conformance.suite_run"
         words = [sys.executable, "-m", "pytest", "-p", module, "--rttrr-mutation-job", str(job), *self.arguments]
         words += ["-p", "no:cacheprovider", *(["-n0"] if _has_xdist() else [])]
+        paths = [str(Path(__file__).parents[2]), *filter(None, [os.environ.get("PYTHONPATH")])]  # of this very package
+        environment = os.environ | {"PYTHONPATH": os.pathsep.join(paths)}
         with printed.open("wb") as out:
-            child = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=out, stderr=out)
+            child = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=out, stderr=out, env=environment)
         try:
             while child.poll() is None:
                 time.sleep(POLL)

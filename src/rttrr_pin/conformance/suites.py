@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,7 +17,7 @@ from rttrr_pin.errors import InputError, UnknownNameError
 from rttrr_pin.implementations import Batch, default_allowance
 from rttrr_pin.validation.sampling import Ranges
 
-KINDS = {
+LEVEL_OF = {
     "gravity": "gravity",
     "rates": "rates",
     "random": "accelerations",
@@ -25,7 +25,10 @@ KINDS = {
     "fast": "fast",
     "cancelling": "cancelling",
 }
-"""Kinds of states, and the levels that they are those of."""
+"""Kinds of states that are those of a level."""
+
+KINDS = (*LEVEL_OF, "units")
+"""Kinds of states."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,8 +38,9 @@ class Tolerances:
     Attributes:
         states: kinds of states, some of `KINDS`: "gravity" at rest, "rates" without accelerations, "random" all of q,
             v and a, "payload" with a wrench at the last link, "fast" at 300 rad/s, "cancelling" where all terms of a
-            driving force add up to nearly nothing.
-        n_states: how many of each kind.
+            driving force add up to nearly nothing, "units" at rest with one acceleration of 1 after the other, as tests
+            of the mass matrix have.
+        n_states: how many of each kind; of "units" so many poses.
         atol: absolute tolerance [N or N m]; None for the rounding tolerance of `validate`, whatever `rtol` is.
         rtol: relative tolerance.
         quantities: what is compared, of tau, F, N, f, n.
@@ -59,7 +63,7 @@ class Tolerances:
             InputError: a number cannot be used.
             UnknownNameError: there is no such kind of states or quantity.
         """
-        for argument, known in (("states", tuple(KINDS)), ("quantities", QUANTITIES)):
+        for argument, known in (("states", KINDS), ("quantities", QUANTITIES)):
             own = names_of(argument, getattr(self, argument))
             object.__setattr__(self, argument, own)
             if not own:
@@ -90,10 +94,9 @@ class Tolerances:
 
     def batches(self, model: Model) -> list[Batch]:
         """The states of a robot, those with a payload apart."""
-        levels = {level.id: level for level in LEVELS}
         found: dict[object, list[Batch]] = {}
         for kind in dict.fromkeys(self.states):
-            batch = levels[KINDS[kind]].states(model, self.n_states, self.seed)
+            batch = _states(kind, model, self.n_states, self.seed)
             if self.rates is not None and kind != "gravity":
                 batch = replace(batch, v=batch.v * (self.rates / Ranges.of(model).rate))
             found.setdefault(shape_of_loads(batch) if loaded(batch).any() else (), []).append(batch)
@@ -116,7 +119,11 @@ class Tolerances:
         return iter(seen.tolist())
 
 
-def whole(suites: Sequence[Tolerances]) -> tuple[tuple[str, ...], bool]:
-    """The quantities that several suites compare, and whether any has a payload."""
-    keys = {key for own in suites for key in own.quantities}
-    return tuple(key for key in QUANTITIES if key in keys), any(own.payload for own in suites)
+def _states(kind: str, model: Model, count: int, seed: int) -> Batch:
+    """Those of a level, or unit accelerations."""
+    levels = {level.id: level for level in LEVELS}
+    if kind != "units":
+        return levels[LEVEL_OF[kind]].states(model, count, seed)
+    rest = levels["gravity"].states(model, count, seed)
+    still = np.zeros((count * model.nv, model.nv))
+    return Batch(model, np.repeat(rest.q, model.nv, axis=0), still, np.tile(np.eye(model.nv), (count, 1)))
