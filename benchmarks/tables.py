@@ -412,7 +412,7 @@ def kit() -> Lines:
     low, median, high = data["seconds"]
     count = data["checks"]["passed"]
     return [
-        f"All checks of a plain NumPy function on RTTRR ({count} of them, {data['states']} states each), start of pytest "
+        f"All checks of a plain NumPy function on RTTRR ({count}, {data['states']} states each), start of pytest "
         f"included: **{median:.1f} s** ({low:.1f} to {high:.1f} s; {measured(data, 'kit_time')})."
     ]
 
