@@ -8,7 +8,7 @@ from rttrr_pin.lazy import lazy
 
 if TYPE_CHECKING:
     from rttrr_pin.conformance.assertions import assert_inverse_dynamics as assert_inverse_dynamics
-    from rttrr_pin.conformance.judge import judge as judge
+    from rttrr_pin.conformance.judging import judge as judge
     from rttrr_pin.conformance.levels import LEVELS as LEVELS
     from rttrr_pin.conformance.levels import Case as Case
     from rttrr_pin.conformance.levels import Level as Level
@@ -36,7 +36,7 @@ __getattr__, __dir__, __all__ = lazy(
     __name__,
     {
         "assertions": ("assert_inverse_dynamics",),
-        "judge": ("judge",),
+        "judging": ("judge",),
         "levels": ("LEVELS", "Case", "Level", "cases"),
         "mutants": ("Mutant",),
         "mutation": ("MutationScore", "mutate"),

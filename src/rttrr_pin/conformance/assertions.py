@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from rttrr_pin.conformance.judge import Wanted, judge
+from rttrr_pin.conformance.judging import Wanted, judge
 from rttrr_pin.conformance.levels import LEVELS, Case, Level, cases
 from rttrr_pin.conformance.results import LevelResult
 from rttrr_pin.core.arrays import Array

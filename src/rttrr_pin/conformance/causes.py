@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from rttrr_pin.conformance.judge import allowed
+from rttrr_pin.conformance.judging import allowed
 from rttrr_pin.conformance.levels import Case
 from rttrr_pin.conformance.results import LevelResult
 from rttrr_pin.diagnosis.report import told

@@ -9,7 +9,7 @@ import click
 
 from rttrr_pin.conformance.badge import badge as text_of_badge
 from rttrr_pin.conformance.badge import kind_of
-from rttrr_pin.conformance.judge import PRECISIONS
+from rttrr_pin.conformance.judging import PRECISIONS
 from rttrr_pin.conformance.junit import junit as text_of_junit
 from rttrr_pin.conformance.levels import LEVELS
 from rttrr_pin.conformance.report import show_conformance

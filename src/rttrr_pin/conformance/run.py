@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from rttrr_pin.conformance.judge import PRECISIONS, Wanted, ask, judged, precision_of, without_numbers
+from rttrr_pin.conformance.judging import PRECISIONS, Wanted, ask, judged, precision_of, without_numbers
 from rttrr_pin.conformance.levels import Case, cases
 from rttrr_pin.conformance.results import Conformance, LevelResult
 from rttrr_pin.core.arguments import choice

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Literal
 
@@ -30,7 +30,7 @@ PRECISIONS = {own.name: own for own in (DOUBLE, SINGLE)}
 
 DISTINCT, LONG, SHORT_BITS = 16, 8, 2.0**16
 """Numbers that differ, of which so many are long, before all of them say that a program computes in float32: long is
-what takes more than 16 bits, or nine digits where it was printed. Every number of few digits is one of float32's."""
+what takes more than 16 bits, or eight digits where it was printed. Every number of few digits is one of float32's."""
 
 
 def judge(case: Case, subject: Implementation, precision: Wanted = "auto") -> LevelResult:
@@ -80,8 +80,8 @@ def without_numbers(case: Case, error: RttrrError) -> LevelResult:
 def precision_of(results: Iterable[Mapping[str, Array]]) -> Precision:
     """float32 where all numbers are of float32, or what is printed of one, and enough of them are long; else float64.
 
-    A double that is computed as one has a chance of 2^-29 to be a float32; a number of nine digits has one of 1/6 at
-    most to be what is printed of one. Small integers and short decimals say nothing, nor does what is not finite.
+    A double that is computed as one has a chance of 2^-29 to be a float32; a number of eight or nine digits one of
+    1/2 or 1/6 to be what is printed of one. Small integers and short decimals say nothing, nor does what is not finite.
     """
     numbers = np.unique(np.concatenate([np.abs(x).ravel() for values in results for x in values.values()]))
     numbers = numbers[np.isfinite(numbers) & (numbers > 0.0)]
@@ -95,7 +95,7 @@ def precision_of(results: Iterable[Mapping[str, Array]]) -> Precision:
     for x, single in zip(numbers[~equal].tolist(), singles[~equal], strict=True):
         if x not in (float(str(single)), float(f"{single:.8e}")):
             return DOUBLE
-        long += f"{x:.8e}".partition("e")[0][-1] != "0"
+        long += any(digit != "0" for digit in f"{x:.8e}".partition("e")[0][-2:])
     return SINGLE if long >= LONG else DOUBLE
 
 
@@ -108,10 +108,32 @@ def allowed(batch: Batch, evaluation: Evaluation, precision: Precision) -> Evalu
     return replace(evaluation, allowance={key: np.maximum(x, own.get(key, 0.0)) for key, x in least.items()})
 
 
-@lru_cache(maxsize=64)
 def truth(case: Case) -> Enclosures:
-    """Enclosures of the true values of a case; those of the last cases are kept."""
-    batch = case.batch
+    """Enclosures of the true values of a case; those of the last cases are kept, by the states themselves."""
+    return _truth(_States(case.batch))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _States:
+    """States that equal others with the same numbers, of the same model."""
+
+    batch: Batch
+
+    def _key(self) -> tuple[object, ...]:
+        batch = self.batch
+        loads = tuple((x.link, x.in_base, x.f.tobytes(), x.n.tobytes()) for x in batch.loads)
+        return id(batch.model), batch.q.tobytes(), batch.v.tobytes(), batch.a.tobytes(), loads
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _States) and self._key() == other._key()
+
+
+@lru_cache(maxsize=64)
+def _truth(states: _States) -> Enclosures:
+    batch = states.batch
     return enclose(batch.model, batch.q, batch.v, batch.a, batch.loads, true_parameters(batch.model))
 
 
