@@ -12,7 +12,7 @@ from rttrr_pin.core.joints import FIXED
 from rttrr_pin.core.model import Link, Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import QUANTITIES
-from rttrr_pin.diagnosis.run import hypotheses_of
+from rttrr_pin.diagnosis.catalogue.mechanics import mechanics
 from rttrr_pin.diagnosis.variants.variant import Variant
 from rttrr_pin.implementations import Batch, Evaluation
 
@@ -70,7 +70,7 @@ class Gyroscopic:
     version, name, quantities = "", "gyroscopic", QUANTITIES
 
     def __init__(self, model: Model) -> None:
-        found = [own for own in hypotheses_of(model) if own.id == "outwards: drop w.cross(body.I @ w)"]
+        found = [own for own in mechanics(model) if own.id == "outwards: drop w.cross(body.I @ w)"]
         self.variant = Variant(model)
         for own in found:
             self.variant = own.apply(self.variant, ())

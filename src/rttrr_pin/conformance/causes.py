@@ -18,6 +18,9 @@ from rttrr_pin.implementations.allowance import Precision
 LARGEST = 24
 """Links up to which all hypotheses are tried, some hundreds for each; beyond, those that explain failures elsewhere."""
 
+SEARCHED = 2
+"""Robots on which all hypotheses were tried in vain, before they are tried on no other."""
+
 UNEXPLAINED = "unexplained"
 
 Failing = tuple[Case, Implementation, LevelResult]
@@ -41,7 +44,8 @@ def with_causes(
     """The outcomes with what the program does otherwise.
 
     What explains one case is tried first in the next, and only where that does not do, all of the catalogue. So a fault
-    that shows in each level is looked for once. On a robot where a failure stayed unexplained there is no further look.
+    that shows in each level is looked for once. On a robot where a failure stayed unexplained there is no further look,
+    and on no other robot after `SEARCHED` of them.
 
     Args:
         failing: case, program, and outcome of each case whose numbers failed.
@@ -50,13 +54,14 @@ def with_causes(
     """
     known, given_up, results = set[str](), set[str](), list[LevelResult]()
     for case, program, result in failing:
-        small = len(case.robot.model.links) <= LARGEST and case.name not in given_up
-        found = _found(case, InPrecision(program, precision), known, small)
+        few = len(case.robot.model.links) <= LARGEST
+        whole = few and case.name not in given_up and len(given_up) < SEARCHED
+        found = _found(case, InPrecision(program, precision), known, whole)
         if isinstance(found, Diagnosis) and found.verdict == "explained":
             known |= {cause.hypothesis for cause in found.causes}
             sentence = "; ".join(map(told, found.causes))
         elif isinstance(found, Diagnosis):
-            given_up.add(case.name)
+            given_up |= {case.name} if whole else set()
             sentence = "; ".join([UNEXPLAINED, *found.dependence[:1]])
         else:
             sentence = found
@@ -66,14 +71,14 @@ def with_causes(
     return results
 
 
-def _found(case: Case, program: InPrecision, known: set[str], small: bool) -> Diagnosis | str:
-    """The diagnosis of a case; or why there is none."""
+def _found(case: Case, program: InPrecision, known: set[str], whole: bool) -> Diagnosis | str:
+    """The diagnosis of a case, by what is known or the whole catalogue; or why there is none."""
     try:
         first = diagnose_at(case.batch, program, ids=known) if known else None
-        if first is not None and (first.verdict == "explained" or not small):
+        if first is not None and first.verdict == "explained":
             return first
-        if not small:
-            return f"{UNEXPLAINED}: of a robot with {len(case.robot.model.links)} links not all hypotheses were tried"
+        if not whole:
+            return f"{UNEXPLAINED} by what explains other levels; all hypotheses were not tried once more"
         return diagnose_at(case.batch, program)
     except RttrrError as error:
         return f"{UNEXPLAINED}: {error}"

@@ -77,7 +77,7 @@ def cells(own: LevelResult) -> tuple[str, ...]:
         "" if worst is None else _short(worst[1].eps),
         own.outcome if not own.quantities else "" if worst is None else place(*worst),
         "" if own.worst is None else _short(own.worst[1].of_allowance),
-        "" if math.isnan(own.digits) else f"{own.digits:.1f}",
+        "" if not own.quantities else "none" if math.isnan(own.digits) else f"{own.digits:.1f}",
     )
 
 

@@ -92,8 +92,7 @@ def make_implementation(source: Source, model: Model) -> Implementation:
         from rttrr_pin.implementations.program import Program
 
         return Program(text, model)
-    module, colon, attribute = text.partition(":")
-    if colon and all(part.isidentifier() for part in (*module.split("."), *attribute.split("."))):
+    if _is_in_module(text):
         return make_implementation(_of_module(text), model)
     raise UnknownNameError("implementation", text, names(), "a program needs its path, such as ./my_id")
 
@@ -113,7 +112,7 @@ def for_one_robot(source: Source) -> bool:
         from rttrr_pin.implementations.program import PLACES
 
         return not any(place in text for place in PLACES)
-    return ":" not in text or for_one_robot(_of_module(text))
+    return _is_in_module(text) and for_one_robot(_of_module(text))
 
 
 def is_table(source: Source) -> bool:
@@ -160,6 +159,12 @@ def _made(factory: Callable[..., Any], name: str, model: Model) -> Implementatio
         f"implementation {name} is a {type(made).__name__}: "
         "expected one with name, version, quantities and evaluate, or a function f(q, v, a)"
     )
+
+
+def _is_in_module(text: str) -> bool:
+    """Whether it may name something in a module."""
+    module, colon, attribute = text.partition(":")
+    return bool(colon) and all(part.isidentifier() for part in (*module.split("."), *attribute.split(".")))
 
 
 def _is_command(text: str) -> bool:
