@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -34,6 +35,20 @@ def test_it_is_shown_in_the_order_of_the_program(capsys: pytest.CaptureFixture[s
         lines = capsys.readouterr().out.splitlines()
         assert f"link {order}" in [" ".join(line.split()) for line in lines]
     assert main(STATE) == 0 and "nx" not in capsys.readouterr().out
+
+
+def test_what_is_no_number_is_text(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """JSON has no NaN."""
+    (tmp_path / "nothing.py").write_text(
+        "import numpy as np\n\ndef known(q, v, a):\n"
+        "    return {'tau': 0 * a, 'f': np.full((6, 3), np.nan), 'n': np.zeros((6, 3))}\n"
+    )
+    monkeypatch.chdir(tmp_path)
+    assert main([*STATE, "--subject", "nothing:known", "--convention", "mujoco", "--json", "-"]) == 1
+    said = json.loads(capsys.readouterr().out, parse_constant=pytest.fail)["wrenches"]["wrenches"]
+    assert said[0][0] == ["nan"] * 6
 
 
 def test_what_cannot_be_shown_is_said(capsys: pytest.CaptureFixture[str]) -> None:

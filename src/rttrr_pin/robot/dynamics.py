@@ -70,7 +70,8 @@ class Dynamics:
         every layout. The first call compiles, or reads what another process has compiled before.
 
         Returns:
-            tau (..., nv) and F, N, f, n (..., links, 3), the latter in {i}, the frame of each link.
+            tau (..., nv) and F, N, f, n (..., links, 3), the latter in {i}, the frame of each link; `in_convention` of
+            the result says f and n as another program does.
         """
         parts = self._kernel(RESULTS)(q, v, a, payload)
         return LinkWrenches.of(parts, self.link_names, self.model.v_names, self.model, copied(q))

@@ -13,7 +13,7 @@ from rich.text import Text
 from rttrr_pin.errors import InputError
 from rttrr_pin.reporting.options import flag, outcome, robot, seed
 from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json
-from rttrr_pin.reporting.results import counted
+from rttrr_pin.reporting.results import counted, finite
 from rttrr_pin.robot import Robot
 from rttrr_pin.urdf.catalogue import one_or_several
 from rttrr_pin.validation.options import RunOptions, conditions, drawn, payload, programs
@@ -79,7 +79,7 @@ def state(index: int, convention: str | None, json: str | None, quiet: bool, **r
     options = RunOptions(**run)
     report = compare_state(options.load(json), index, sampling=options.sampling, **options.chosen())
     wrenches = None if convention is None else wrenches_of(report, convention)
-    write_json(json, lambda: report.to_dict() | ({} if wrenches is None else {"wrenches": wrenches.to_dict()}))
+    write_json(json, lambda: report.to_dict() | (finite({"wrenches": wrenches.to_dict()}) if wrenches else {}))
     console = Output(quiet=quiet or json == "-", soft_wrap=False)
     show_state(report, console)
     if wrenches is not None:
