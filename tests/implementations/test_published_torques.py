@@ -24,6 +24,7 @@ from rttrr_pin import Robot, Wrench
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.joints import FIXED, PRISMATIC, REVOLUTE
 from rttrr_pin.core.model import Link, Model
+from support.recursion import recursion
 from support.tolerances import EXACT, NINE_DIGITS, norm_error
 
 Array = NDArray[np.float64]
@@ -147,9 +148,9 @@ def joint_terms(case: Case, qd: Array, qdd: Array) -> Array:
 
 
 def torques(case: Case) -> Array:
-    """Our rigid-body torques and the published joint terms for the motion and the payload of a case."""
+    """The recursion's rigid-body torques and the published joint terms for the motion and the payload of a case."""
     q, qd, qdd = (case.array(key) for key in ("q", "qd", "qdd"))
-    return case.robot.inverse_dynamics(q, qd, qdd, case.payload).tau + joint_terms(case, qd, qdd)
+    return recursion(case.robot, q, qd, qdd, case.payload).tau + joint_terms(case, qd, qdd)
 
 
 def mass_matrix(case: Case) -> Array:
