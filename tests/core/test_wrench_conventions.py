@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from itertools import product
@@ -10,6 +12,7 @@ from typing import Any
 import mujoco
 import numpy as np
 import pytest
+import yourdfpy
 
 import rttrr_pin
 from rttrr_pin import Robot
@@ -23,7 +26,7 @@ from rttrr_pin.validation import Sampler
 from support import wrench_programs
 from support.recursion import recursion
 from support.serial_chains import random_chain
-from support.tolerances import DIAGONALISED, EXACT, ROUNDING, SINGLE
+from support.tolerances import CONSUMER, DIAGONALISED, EXACT, ROUNDING, SINGLE, norm_error
 from support.trees import random_tree
 
 STATES = 5
@@ -123,6 +126,33 @@ def test_mujoco_of_its_own_model() -> None:
     told = wrench_programs.mujoco(robot, batch, compiled)
     assert {"plate", "stand"} <= {*told[1]}
     assert agreeing(robot, batch, told) == only("mujoco")
+
+
+def test_an_object_that_is_no_mujoco_model_is_as_its_text() -> None:
+    text = random_tree(39, 8, TREE, mimics=False)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        robot = rttrr_pin.load(yourdfpy.URDF.load(io.StringIO(text), load_meshes=False, build_scene_graph=False))
+    batch = drawn(robot)
+    assert agreeing(robot, batch, wrench_programs.mujoco(robot, batch), DIAGONALISED) == only("mujoco")
+
+
+def test_sensors_of_a_site_of_mujoco() -> None:
+    """At the joint and in the link's axes they are f and n."""
+    robot = rttrr_pin.load("rttrr")
+    spec = mujoco.MjSpec.from_string(robot.model.urdf)
+    spec.body("link_4").add_site(name="site")
+    for kind in (mujoco.mjtSensor.mjSENS_FORCE, mujoco.mjtSensor.mjSENS_TORQUE):
+        spec.add_sensor(type=kind, objtype=mujoco.mjtObj.mjOBJ_SITE, objname="site")
+    compiled = spec.compile()
+    compiled.opt.disableflags |= int(mujoco.mjtDisableBit.mjDSBL_CONTACT)
+    data = mujoco.MjData(compiled)
+    batch = drawn(robot, 1)
+    data.qpos, data.qvel = batch.q[0], batch.v[0]
+    mujoco.mj_forward(compiled, data)
+    batch = replace(batch, a=data.qacc[None].copy())
+    wanted = np.r_[batch.recursion[0].at("link_4")["f"][0], batch.recursion[0].at("link_4")["n"][0]]
+    assert norm_error(data.sensordata, wanted) <= CONSUMER
 
 
 @pytest.mark.drake

@@ -79,17 +79,17 @@ def _frames(row: Convention, model: Model, q: Array) -> tuple[Array, Array]:
 def tree_centres(model: Model, R: Array, p: Array) -> Array:
     """For each link the centre of mass of its tree of bodies, in base axes, (N, links, 3) [m].
 
-    A tree is what hangs on one body of the world. In a file's robot, whose fixed links a program merges into what
-    carries them, that is a link that moves against the base, with all behind it; what is fixed to the base is merged
-    into the world, and of no such tree. In the robot of an object nothing is merged any more: a tree is whatever hangs
-    on one link at the base.
+    A tree is what hangs on one body of the world. MuJoCo merges the fixed links of a file into what carries them, so
+    there it is a link that moves against the base, with all behind it; what is fixed to the base is merged into the
+    world, and of no such tree. In the robot of an `MjModel` that is done: a tree is whatever hangs on one link at the
+    base.
 
     Args:
         model: the robot.
         R: R_0_i, (N, links, 3, 3).
         p: p_0_i, (N, links, 3).
     """
-    merged = not getattr(model.document, "made_from", "")
+    merged = getattr(model.document, "made_from", "") != "mujoco.MjModel"
     mass = np.array([link.mass for link in model.links])
     at = p + product(R, _coms(model))
     first = np.array([_first(model, i, merged) for i in range(len(model.links))], dtype=int)
