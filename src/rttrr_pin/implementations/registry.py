@@ -94,7 +94,8 @@ def make_implementation(source: Source, model: Model) -> Implementation:
         return Program(text, model)
     if _is_in_module(text):
         return make_implementation(_of_module(text), model)
-    raise UnknownNameError("implementation", text, names(), "a program needs its path, such as ./my_id")
+    hint = "a program needs its path, such as ./my_id, and a table is a file .csv, .jsonl or .parquet"
+    raise UnknownNameError("implementation", text, names(), hint)
 
 
 def for_one_robot(source: Source) -> bool:
