@@ -218,6 +218,11 @@ def told(error: BaseException, where: str = "") -> str:
     return f"{type(error).__name__}{where}{text and ': '}{text}"
 
 
+def because(error: NotImplementedError) -> str:
+    """What a user's code says of what it does not offer, behind a colon; empty where it says nothing."""
+    return told(error).removeprefix(type(error).__name__)
+
+
 def nearest(got: object, known: Iterable[str]) -> str:
     """The hint that follows an unknown name: the closest names that exist, or all of them where none is close."""
     names = list(known)

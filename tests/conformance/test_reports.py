@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import io
 import json
+import re
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 from xml.etree import ElementTree
 
@@ -48,6 +50,12 @@ def text(result: Conformance, width: int = 80, **how: Any) -> str:
     return console.file.getvalue()  # type: ignore[attr-defined]
 
 
+def test_the_levels_stand_in_the_docs() -> None:
+    page = (Path(__file__).parents[2] / "docs/conform.md").read_text()
+    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in page.splitlines() if re.match(r"\| \d", line)]
+    assert rows == [[str(x.number), f"`{x.id}`", x.sentence, ", ".join(x.robots)] for x in LEVELS]
+
+
 def test_text_has_a_line_for_each_case_and_why(failing: Conformance) -> None:
     shown = text(failing)
     rows = [line for line in shown.splitlines() if line[:2].strip().isdigit()]
@@ -59,7 +67,7 @@ def test_text_has_a_line_for_each_case_and_why(failing: Conformance) -> None:
 
 
 def test_the_table_fits_a_terminal(failing: Conformance) -> None:
-    table = text(perfect(failing)).split("median, worst")[0]
+    table = text(perfect(failing)).split("eps: the worst")[0]
     lines = table.splitlines()
     assert len(lines) == 2 + len(LEVELS) and max(map(len, lines)) <= 80
 

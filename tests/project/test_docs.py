@@ -58,6 +58,7 @@ def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     other = other.replace('upper="0.32"', 'upper="0.3"').replace("joint_5", "wrist")
     (tmp_path / "other_arm.urdf").write_text(other)
     shutil.copytree(ROOT / "tests/data/torques_differ", tmp_path, dirs_exist_ok=True)
+    shutil.copy(ROOT / "examples/my_dynamics.py", tmp_path)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "80")
     return tmp_path

@@ -20,6 +20,7 @@ import pytest
 
 import rttrr_pin
 from rttrr_pin import errors
+from rttrr_pin.conformance import conform
 from rttrr_pin.diagnosis import diagnose, diagnose_log, sample_states
 from rttrr_pin.implementations import make_implementation
 from rttrr_pin.validation import Sampler
@@ -31,6 +32,7 @@ EXAMPLE = Path(__file__).parents[2] / "examples/audit_two_link.toml"
 PACKAGES = (
     "rttrr_pin",
     *(f"rttrr_pin.{name}" for name in ["errors", "implementations", "validation", "laws", "inspection", "diagnosis"]),
+    "rttrr_pin.conformance",
 )
 PACKAGES = (*PACKAGES, *(f"rttrr_pin.{name}" for name in ["auditing", "derivation", "compile", "exact"]))
 
@@ -79,6 +81,8 @@ def objects() -> dict[str, Any]:
         "Diagnosis": diagnose(robot, "recursion", n_states=np.int64(3), seed=np.int64(2)),  # type: ignore[arg-type]
         "Diagnosis of a cause": diagnose(robot, still, n_states=20),
         "LogDiagnosis": diagnose_log(robot, the_log(robot)),
+        "Conformance": conform("recursion", levels=["gravity"], n_states=np.int64(2), seed=np.int64(2)),  # type: ignore[arg-type]
+        "Conformance of nan": conform(not_a_number, [robot], ["rates"], n_states=2),
         "LawReport": rttrr_pin.check_laws(robot, n_states=np.int64(2), seed=np.int64(2)),  # type: ignore[arg-type]
         "Inspection": rttrr_pin.inspect(robot),
         "Comparison": rttrr_pin.compare_robots(robot, "trtrr", np.int64(3), seed=np.int64(2)),  # type: ignore[arg-type]
@@ -103,6 +107,8 @@ NAMES = (
     ),
     *(
         "Sample",
+        "Conformance",
+        "Conformance of nan",
         "WorstCase",
         "LawReport",
         "Inspection",
@@ -148,7 +154,7 @@ def test_objects_can_be_compared_and_shown(name: str) -> None:
 
 AS_DATA = (
     *("Validation", "Validation of nan", "StateReport", "StateReport of nan", "WorstCase", "LawReport", "Inspection"),
-    *("Diagnosis", "Diagnosis of a cause", "LogDiagnosis"),
+    *("Diagnosis", "Diagnosis of a cause", "LogDiagnosis", "Conformance", "Conformance of nan"),
     *("Comparison", "Derivation", "Derivation in steps", "AuditResult", "Enclosures", "BaseParameters"),
     "JointWrenches",
 )

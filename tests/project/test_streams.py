@@ -68,6 +68,7 @@ COMMANDS: dict[str, list[str]] = {
     "laws": ["laws", "{robot}", "--states", "20"],
     "sample": ["sample", "{robot}", "-n", "20"],
     "diagnose": ["diagnose", "{robot}", "--subject", "support.implementations:still", "--states", "20"],
+    "conform": ["conform", "recursion", "{robot}", "-n", "2"],
     "compare": ["compare", "{robot}", "{robot}", "--full"],
     "derive": ["derive", "{robot}"],
     "inspect": ["inspect", "{robot}"],

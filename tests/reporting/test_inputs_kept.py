@@ -47,6 +47,7 @@ COMMANDS = {
     "one/arm.urdf": [
         *("validate one --states 5 --json", "inspect one --junit", "derive one --c", "state one --json"),
         *("compare arm.urdf one --json", "compare arm.urdf one --html", "diagnose one --subject kernel --html"),
+        "conform recursion one -n 1 --junit",
     ],
     "arm.urdf": ["audit whole.toml --json", "audit parts.toml --latex"],
     "symbols.toml": ["audit parts.toml --html"],
@@ -55,6 +56,8 @@ COMMANDS = {
         "validate --subject my_id:my_id --json",
         "validate --subject 'python my_id.py' --json",
         "diagnose --subject 'python my_id.py' --html",
+        "conform my_id:my_id arm.urdf --json",
+        "conform 'python my_id.py {urdf}' --html",
     ],
     "settings.toml": ["search --subject './my_id.py settings.toml' --json"],
 }

@@ -20,7 +20,7 @@ def junit(result: Conformance) -> str:
     sentences = {level.id: level.sentence for level in LEVELS}
     for own in result.results:
         test = ElementTree.SubElement(suite, "testcase", classname=own.robot, name=own.id, time="0")
-        text = "\n".join([sentences[own.level], own.summary(), *filter(None, [own.cause])])
+        text = f"{sentences[own.level]}\n{own.summary()}"
         if own.passed:
             ElementTree.SubElement(test, "system-out").text = text
         else:

@@ -15,8 +15,8 @@ from rttrr_pin.reporting.results import counted
 from rttrr_pin.validation.report import word
 
 LEGEND = (
-    "median, worst: error in eps ({eps}) of the true vector, where that is more than rounding; of bound: 1 is all that "
-    "rounding can explain; digits: the fewest true decimal digits of any number"
+    "eps: the worst error in units of {eps} of the true vector, where that is more than rounding; of bound: 1 is all "
+    "that rounding can explain; digits: the fewest true decimal digits of any number"
 )
 
 EPS = {"float64": "2^-52", "float32": "2^-23"}
@@ -68,12 +68,11 @@ def said(result: Conformance) -> Iterator[tuple[str, list[str]]]:
 
 
 def cells(own: LevelResult) -> tuple[str, ...]:
-    """Level, robot where it is not called so, median and worst error in eps, where that is, error / bound, digits."""
+    """Level, robot where it is not called so, worst error in eps, where that is, error / bound, digits."""
     number = next(level.number for level in LEVELS if level.id == own.level)
     worst = own.worst if own.outcome == "fail" else own.farthest
     return (
         f"{number:2d} {own.level}{f', {own.robot}' if own.robot != own.level else ''}",
-        _short(max((part.median for part in own.quantities if not math.isnan(part.median)), default=math.nan)),
         "" if worst is None else _short(worst[1].eps),
         own.outcome if not own.quantities else "" if worst is None else place(*worst),
         "" if own.worst is None else _short(own.worst[1].of_allowance),
@@ -81,7 +80,7 @@ def cells(own: LevelResult) -> tuple[str, ...]:
     )
 
 
-HEADS = ("level", "median", "worst", "at, state", "of bound", "digits")
+HEADS = ("level", "eps", "at, state", "of bound", "digits")
 """Of the columns of `cells`."""
 
 
@@ -92,7 +91,7 @@ def place(quantity: str, value: Value) -> str:
 
 def _table(result: Conformance) -> Table:
     table = Table(*HEADS, "", box=None, padding=(0, 2, 0, 0), pad_edge=False)
-    for k in (1, 2, 4, 5):
+    for k in (1, 3, 4):
         table.columns[k].justify = "right"
     table.columns[0].no_wrap = True
     for own in result.results:
@@ -113,13 +112,14 @@ def _histograms(own: LevelResult) -> Table:
     return table
 
 
-HISTOGRAM = ("", "numbers", *OF_BIN, "near 0", "beyond")
-"""The columns of a histogram; beyond: what rounding cannot explain."""
+HISTOGRAM = ("", "numbers", "median", *OF_BIN, "near 0", "beyond")
+"""The columns of a histogram; near 0: true values that are rounding; beyond: what rounding cannot explain."""
 
 
 def counts(part: QuantityResult) -> tuple[str, ...]:
-    """How many numbers there are, in each bin, near zero and beyond rounding."""
-    return tuple(f"{n:,}" for n in (part.count, *part.histogram, part.near_zero, part.failures))
+    """How many numbers there are, their median in eps, how many in each bin, near zero and beyond rounding."""
+    whole, *others = (f"{n:,}" for n in (part.count, *part.histogram, part.near_zero, part.failures))
+    return (whole, _short(part.median), *others)
 
 
 def _short(x: float) -> str:

@@ -133,9 +133,8 @@ class LevelResult(Summarised):
         count = sum(own.failures for own in self.quantities)
         beyond = f"{count:,} of {sum(own.count for own in self.quantities):,} numbers beyond rounding, "
         where = f"{quantity} of {value.at} in state {value.state}"
-        return (
-            f"{told}: {beyond if count else ''}worst {where}, {value.of_allowance:.2g} times what rounding can explain"
-        )
+        part = f"worst {where}, {value.of_allowance:.2g} times what rounding can explain"
+        return f"{told}: {beyond if count else ''}{part}{f': {self.cause}' if self.cause else ''}"
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as data for JSON."""

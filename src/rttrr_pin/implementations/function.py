@@ -10,7 +10,7 @@ import numpy as np
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.wrench import QUANTITIES
-from rttrr_pin.errors import ImplementationError, RefusalError, RttrrError, ShapeError, told
+from rttrr_pin.errors import ImplementationError, RefusalError, RttrrError, ShapeError, because, told
 from rttrr_pin.implementations.allowance import SINGLE, Precision, default_allowance
 from rttrr_pin.implementations.protocol import Batch, Evaluation, shape_of
 from rttrr_pin.implementations.text_results import quantities_of, trial_states
@@ -101,7 +101,7 @@ class Function:
             with np.errstate():  # whatever it sets
                 return self.function(q.copy(), v.copy(), a.copy())
         except NotImplementedError as error:
-            raise RefusalError(f"{self.name} does not offer this: {told(error)}") from error
+            raise RefusalError(f"{self.name} does not offer this{because(error)}") from error
         except (Exception, SystemExit) as error:  # the user's own code runs here
             raise ImplementationError(f"{self.name} raised {told(error, f' at state {state}')}") from error
 

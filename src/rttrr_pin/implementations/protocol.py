@@ -15,7 +15,7 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import LINK_QUANTITIES, RESULTS, LinkWrenches
-from rttrr_pin.errors import ImplementationError, NumberError, RefusalError, RttrrError, told
+from rttrr_pin.errors import ImplementationError, NumberError, RefusalError, RttrrError, because, told
 
 LARGEST = 16
 """Links up to which a program with bounds compiles in two seconds or less; it is kept on disk from then on."""
@@ -143,7 +143,7 @@ def evaluated(program: Implementation, batch: Batch) -> Evaluation:
     except (RttrrError, MemoryError):
         raise
     except NotImplementedError as error:
-        raise RefusalError(f"{program.name} does not offer this: {told(error)}") from error
+        raise RefusalError(f"{program.name} does not offer this{because(error)}") from error
     except (Exception, SystemExit) as error:  # a user's own code may run here
         raise ImplementationError(f"{program.name} raised {told(error, f' at states from {batch.first}')}") from error
     if not isinstance(result, Evaluation):

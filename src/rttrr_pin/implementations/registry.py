@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from rttrr_pin.core.model import Model
-from rttrr_pin.errors import ImplementationError, InputError, RefusalError, RttrrError, UnknownNameError, told
+from rttrr_pin.errors import ImplementationError, InputError, RefusalError, RttrrError, UnknownNameError, because, told
 from rttrr_pin.implementations.protocol import Implementation
 
 if TYPE_CHECKING:
@@ -149,7 +149,7 @@ def _made(factory: Callable[..., Any], name: str, model: Model) -> Implementatio
     except RttrrError:
         raise
     except NotImplementedError as error:
-        raise RefusalError(f"{name} does not take robot {model.name!r}: {told(error)}") from error
+        raise RefusalError(f"{name} does not take robot {model.name!r}{because(error)}") from error
     except (Exception, SystemExit) as error:
         raise ImplementationError(f"implementation {name} cannot be made: {told(error)}") from error
     if isinstance(made, Implementation) and not isinstance(made, type):

@@ -220,7 +220,8 @@ class Search:
         fitted = [len(own.start) for own, _ in few]
         for (outer, _), base, columns in zip(alone, without, parameter_columns(variants, self.sample), strict=True):
             target = ((self.sample.values - base) / self.scale).ravel()
-            rows = np.array([direction for _, direction in few]).reshape(len(few), len(columns)) @ (columns / self.scale.ravel())
+            directions = np.array([direction for _, direction in few]).reshape(len(few), len(columns))
+            rows = directions @ (columns / self.scale.ravel())
             for (own, _), row, left in zip(few, rows, left_by_each(target, rows, fitted), strict=True):
                 found.append((float(left) / self.size, (outer, Change(own, row[None] if own.start else row))))
         return sorted(found, key=_order)
