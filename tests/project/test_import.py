@@ -35,7 +35,7 @@ def test_nothing_large_is_imported() -> None:
 
 
 def test_scipy_is_for_logs_whose_rates_are_derived_and_other_results_load_none() -> None:
-    assert loaded(["scipy"], "import rttrr_pin.diagnosis.run, rttrr_pin.diagnosis.log_diagnosis") == "[]"
+    assert loaded(["scipy"], "import rttrr_pin.diagnosis.run, rttrr_pin.diagnosis.logs.log_diagnosis") == "[]"
 
 
 def loaded(names: Sequence[str], imports: str) -> str:
