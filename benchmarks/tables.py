@@ -449,7 +449,6 @@ def vectors() -> Lines:
             f"{own['states']:,}",
             f"{own['numbers']:,}",
             f"{own['outside']:,}",
-            f"{own['seconds']:.0f} s",
         ]
         for name, own in checked["robots"].items()
     ]
@@ -462,7 +461,7 @@ def vectors() -> Lines:
         f"outside** their enclosure. Of the enclosures {counts[0]:,} are one double, {counts[1]:,} two neighbours, "
         f"{counts[2] + counts[3]:,} wider.",
         "",
-        *table(["robot", "levels", "links", "states", "true values", "outside", "mpmath"], rows),
+        *table(["robot", "levels", "links", "states", "true values", "outside"], rows),
     ]
 
 

@@ -11,8 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import rttrr_pin
+from rttrr_pin.conformance import write_vectors
 from rttrr_pin.conformance.vector_tables import steps, widths
 from rttrr_pin.conformance.vectors import BUNDLED
+from support.trees import random_tree
 
 ROOT = Path(__file__).parents[2]
 READERS = ROOT / "examples" / "vectors"
@@ -82,6 +85,18 @@ def test_a_program_in_sixty_digits_finds_each_true_value_inside(tmp_path: Path) 
             rows[2][column] = (x + 3 * math.ulp(x)).hex()
     table.write_text("\n".join(map(",".join, rows)) + "\n")
     assert run(sys.executable, script, "--folder", folder).returncode == 1
+
+
+@pytest.mark.slow
+def test_a_program_in_sixty_digits_finds_those_of_any_tree(tmp_path: Path) -> None:
+    types = ("revolute", "prismatic", "continuous", "planar", "fixed")
+    robots = []
+    for seed in range(4):
+        text = random_tree(seed, 6, types).replace('<robot name="', f'<robot name="{seed}_', 1)
+        robots.append(rttrr_pin.load(text, base="floating" if seed % 2 else "fixed", friction=True))
+    write_vectors(tmp_path / "trees", robots, n_states=2)
+    done = run(sys.executable, ROOT / "benchmarks" / "vectors_check.py", "--folder", tmp_path / "trees")
+    assert done.returncode == 0, done.stderr
 
 
 @pytest.mark.parametrize("x", [0.0, -0.0, 5e-324, 1.0, -1.0, 2.0**-1022, -3.5e300])

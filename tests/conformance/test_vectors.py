@@ -6,18 +6,22 @@ import json
 import shutil
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import rttrr_pin
 from rttrr_pin import InputError, Robot
-from rttrr_pin.conformance import ProvenCase, Vectors, cases, level_robot, read_vectors, write_vectors
+from rttrr_pin.conformance import ProvenCase, Vectors, cases, level_robot, level_robots, read_vectors, write_vectors
+from rttrr_pin.conformance.mjcf_file import as_mjcf
 from rttrr_pin.conformance.vector_meta import sha256
 from rttrr_pin.conformance.vectors import BUNDLED
 from rttrr_pin.errors import UnknownNameError
 from rttrr_pin.exact import Enclosures, enclose
 from support.trees import random_tree
+
+RESULTS = Path(__file__).parents[2] / "benchmarks" / "results"
 
 OTHER_SCHEMA = '{"format": "rttrr-pin vectors", "schema": 2}'
 
@@ -233,3 +237,28 @@ def test_the_bundled_part_is_proven_anew(bundled: list[ProvenCase]) -> None:
     for case in bundled:
         batch = case.batch
         assert same(case.enclosures, enclose(case.robot.model, batch.q, batch.v, batch.a, batch.loads, "read"))
+
+
+def saved(name: str) -> dict[str, Any]:
+    data: dict[str, Any] = json.loads((RESULTS / f"{name}.json").read_text())
+    return data
+
+
+def test_the_saved_sums_are_of_the_robots_of_the_levels() -> None:
+    """States may differ in a last bit on another machine, files of robots may not."""
+    robots = saved("vectors")["robots"]
+    assert robots.keys() == level_robots().keys()
+    for name, own in robots.items():
+        model = level_robot(name).model
+        assert own["sha256"]["robot.urdf"] == sha256(model.urdf)
+        assert own["sha256"].get("robot.xml") == (sha256(mjcf) if (mjcf := as_mjcf(model).text) else None)
+
+
+def test_the_saved_check_found_nothing_outside() -> None:
+    result = saved("vectors_check")
+    assert result["outside"] == 0
+    assert result["digits"] == 60
+    assert result["robots"].keys() == level_robots().keys()
+    for own in result["robots"].values():
+        assert own["states"] >= 1000
+        assert own["widths"]["more, near zero"] == own["widths"]["three"] == 0
