@@ -85,7 +85,8 @@ def _given(robot: Robot, states: Sequence[Any]) -> Case:
     model = robot.model
     q, v, a = (coordinates(name, x, model.moving) for name, x in zip("qva", states, strict=True))
     check_quaternions(q, model.moving)
-    batch = Batch(model, *_rows(q, v, a))
+    q, v, a = _rows(q, v, a)
+    batch = Batch(model, q, v, a)
     level = Level("given", "States of the user's own.", (), lambda model: True, lambda model, count, seed: batch)
     return Case(level, robot.name, robot, batch)
 

@@ -35,5 +35,5 @@ def junit(result: Conformance) -> str:
 def _told(test: ElementTree.Element, own: LevelResult, text: str) -> None:
     """Why it was not passed; a skipped test has no type."""
     message = own.cause or own.message or own.summary()
-    kind = {} if own.outcome == "not offered" else {"type": own.level}
-    ElementTree.SubElement(test, TAGS[own.outcome], message=message, **kind).text = text
+    attributes = {"message": message} | ({} if own.outcome == "not offered" else {"type": own.level})
+    ElementTree.SubElement(test, TAGS[own.outcome], attributes).text = text

@@ -136,7 +136,8 @@ def robots(
     )
     chains = st.lists(joints, min_size=1, max_size=most).filter(lambda all: base == "floating" or _moves(all))
     roots = body if base == "floating" else st.none()
-    return st.builds(lambda root, chain: _robot(root, chain, base), roots, chains)
+    drawn: SearchStrategy[Robot] = st.builds(lambda root, chain: _robot(root, chain, base), roots, chains)
+    return drawn
 
 
 def states(robot: Robot) -> SearchStrategy[State]:
@@ -157,7 +158,8 @@ def states(robot: Robot) -> SearchStrategy[State]:
 
     acceleration = np.full(model.nv, ACCELERATION)
     pairs = ((ranges.lower, ranges.upper), (-ranges.rate, ranges.rate), (-acceleration, acceleration))
-    return st.builds(made, *(_numbers(*pair) for pair in pairs))
+    drawn: SearchStrategy[State] = st.builds(made, *(_numbers(*pair) for pair in pairs))
+    return drawn
 
 
 def _strategies() -> Any:

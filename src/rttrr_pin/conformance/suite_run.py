@@ -47,8 +47,8 @@ class Program:
         arrays = [np.array(x, dtype=np.float64) for x in (q, v, a)]
         model, shape = self.variant.model, arrays[1].shape[:-1]
         sizes = (model.nq, model.nv, model.nv)
-        rows = [x.reshape(-1, n) for x, n in zip(arrays, sizes, strict=True)]  # an error where it is of another robot
-        values = self.variant.evaluate(Batch(model, *rows))
+        q, v, a = (x.reshape(-1, n) for x, n in zip(arrays, sizes, strict=True))  # fails for another robot
+        values = self.variant.evaluate(Batch(model, q, v, a))
         found: dict[str, Array] = {key: values[key].reshape(*shape, *values[key].shape[1:]) for key in self.quantities}
         return found["tau"] if tuple(found) == ("tau",) else found
 

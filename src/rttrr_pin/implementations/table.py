@@ -88,8 +88,8 @@ class Table:
         if "tau" not in self.quantities:
             return ()
         x, halves = np.abs(self._values["tau"]), self._halves["tau"]
-        empty = ((halves > 0.0) & (x <= halves)).all(axis=0)
-        names = [name for name, own in zip(self.model.v_names, empty, strict=True) if own]
+        empty = np.all((halves > 0.0) & (x <= halves), axis=0)
+        names = [name for name, own in zip(self.model.v_names, empty.tolist(), strict=True) if own]
         limit = halves[:, empty].max(initial=0.0)
         return (f"tau of {listed(names)} is nowhere printed as more than {limit:.3g}: no more is judged",) * bool(names)
 
