@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import os
 import re
+import resource
 import statistics
 import subprocess
 import sys
@@ -28,19 +29,20 @@ PLUGIN = ("-p", "rttrr_pin.conformance.pytest_plugin")
 
 
 def run(*words: str) -> dict[str, Any]:
-    """Seconds, and how many tests had which outcome."""
+    """Seconds, wall and of the processor, and how many tests had which outcome."""
     folder = TOP / "examples/pytest"
     command = [sys.executable, "-m", "pytest", "-q", "-c", os.devnull, "--rootdir", str(folder), *PLUGIN]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(TOP / "src"), str(folder)])}
-    start = time.perf_counter()
+    start, before = time.perf_counter(), resource.getrusage(resource.RUSAGE_CHILDREN)
     done = subprocess.run(
         [*command, "-p", "no:cacheprovider", str(folder), *words], capture_output=True, text=True, env=environment
     )
-    seconds = time.perf_counter() - start
+    seconds, after = time.perf_counter() - start, resource.getrusage(resource.RUSAGE_CHILDREN)
+    processor = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
     outcomes = {kind: int(count) for count, kind in re.findall(r"(\d+) (passed|failed|skipped|error)", done.stdout)}
     if done.returncode:
         print(done.stdout, file=sys.stderr)
-    return {"seconds": seconds, **outcomes}
+    return {"seconds": seconds, "processor_seconds": processor, **outcomes}
 
 
 def main() -> int:
@@ -49,12 +51,13 @@ def main() -> int:
     chosen = parser.parse_args()
     checks = [run("-k", "test_inverse_dynamics") for _ in range(chosen.times)]
     whole = run()
-    seconds = [own.pop("seconds") for own in checks]
+    seconds, processor = ([own.pop(key) for own in checks] for key in ("seconds", "processor_seconds"))
     figures = {
         "robot": "rttrr",
         "states": 32,
         "checks": checks[0],
         "seconds": [min(seconds), statistics.median(seconds), max(seconds)],
+        "processor_seconds": [min(processor), statistics.median(processor), max(processor)],
         "whole_example": whole,
         "limit_seconds": LIMIT,
     }

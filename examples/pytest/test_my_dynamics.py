@@ -6,10 +6,9 @@ from functools import partial
 
 import my_dynamics
 from hypothesis import given, settings
-from hypothesis.strategies import just, tuples
 
 from rttrr_pin.conformance import assert_inverse_dynamics, level_robots, parametrize_with_checks
-from rttrr_pin.conformance.strategies import robots, states
+from rttrr_pin.conformance.strategies import robots_in_motion
 
 PATH = level_robots()["rttrr"]
 my_id = partial(my_dynamics.inverse_dynamics, my_dynamics.read_chain(PATH))
@@ -25,11 +24,7 @@ def test_of_the_levels_of_this_robot():
 
 
 @settings(max_examples=20, deadline=None)
-@given(
-    robots(4, ("revolute", "prismatic", "fixed"), trees=False, mimic=False).flatmap(
-        lambda x: tuples(just(x), states(x))
-    )
-)
+@given(robots_in_motion(4, ("revolute", "prismatic", "fixed"), trees=False, mimic=False))
 def test_of_any_chain(tmp_path_factory, example):
     robot, state = example
     path = tmp_path_factory.mktemp("drawn") / "robot.urdf"

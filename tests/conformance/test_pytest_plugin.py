@@ -178,6 +178,16 @@ def test_tests_without_checks_are_left_alone(run) -> None:  # type: ignore[no-un
     run(tests).assert_outcomes(passed=2)
 
 
+def test_the_example_passes(run, pytester: pytest.Pytester) -> None:  # type: ignore[no-untyped-def]
+    """Dynamics in plain NumPy, also of drawn chains."""
+    for path in (ROOT / "examples/pytest").glob("*.py"):
+        pytester.makepyfile(**{path.stem: path.read_text().replace("max_examples=20", "max_examples=5")})
+    words = ("--rttrr-states", "2", "--rttrr-references", "none")
+    result = run("", *words, "-k", "test_my_dynamics")
+    outcomes = result.parseoutcomes()
+    assert outcomes["passed"] >= 12 and outcomes["skipped"] == 1 and "failed" not in outcomes
+
+
 def test_the_entry_point_has_the_name_of_the_module() -> None:
     """So pytest knows that it has the plugin already, where it is named by -p too."""
     points = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["entry-points"]["pytest11"]

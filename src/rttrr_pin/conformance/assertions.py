@@ -3,20 +3,27 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
 
+<<<<<<< HEAD
 from rttrr_pin.conformance.judging import Wanted, judge
+=======
+from rttrr_pin.conformance.causes import InPrecision
+from rttrr_pin.conformance.judge import PRECISIONS, Wanted, judge
+>>>>>>> 734a183 (Kit: robots that shrink together with their state, causes on a case's own states, a page, figures)
 from rttrr_pin.conformance.levels import LEVELS, Case, Level, cases
 from rttrr_pin.conformance.results import LevelResult
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import batch_shape
 from rttrr_pin.core.inputs import check_quaternions, coordinates
-from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import RandomPayload
+from rttrr_pin.diagnosis.report import place, told
 from rttrr_pin.diagnosis.results import Cause, Diagnosis
+from rttrr_pin.diagnosis.run import diagnose as find_causes
+from rttrr_pin.diagnosis.run import diagnose_at
 from rttrr_pin.errors import InputError, RttrrError
 from rttrr_pin.implementations import Batch, Implementation, label, make_implementation
 from rttrr_pin.implementations.registry import Source
@@ -113,9 +120,13 @@ def of_levels(
     wrong = [(own, result) for own, result in failed if result.outcome == "fail"]
     if not wrong:
         return "\n".join(head)
+    worst, result = wrong[0]
+    judged = InPrecision(program, PRECISIONS[result.precision])
     payload = all(own.batch.loads for own, _ in wrong)
-    why = reason(subject, program, case.robot, payload) if diagnose else ""
-    return "\n".join([*head, why or _state(*wrong[0])])
+    why = reason(subject, judged, case.robot, payload) if diagnose else ""
+    if diagnose and not why:  # it shows in states such as these alone
+        why = _told_of(lambda: diagnose_at(worst.batch, judged))
+    return "\n".join([*head, why or _state(worst, result)])
 
 
 def _told(case: Case, result: LevelResult) -> str:
@@ -155,21 +166,20 @@ def reason(subject: Source, program: Implementation, robot: Robot, payload: bool
     if key not in _kept:
         while len(_kept) >= KEPT:
             _kept.pop(next(iter(_kept)))
-        _kept[key] = subject, robot, _reason(program, robot, payload)  # both are held, so that no other has their id
+        load = RandomPayload() if payload else None
+        why = _told_of(lambda: find_causes(robot, program, "recursion", STATES, payload=load))
+        _kept[key] = subject, robot.model, why  # both are held, so that no other has their id
     return _kept[key][2]
 
 
-def _reason(program: Implementation, robot: Robot, payload: bool) -> str:
-    from rttrr_pin.diagnosis.run import diagnose
-
+def _told_of(diagnosis: Callable[[], Diagnosis]) -> str:
     try:
-        found = diagnose(robot, program, "recursion", STATES, payload=RandomPayload() if payload else None)
+        return "\n".join(_lines(diagnosis()))
     except RttrrError as error:
         return f"it could not be found out why: {error}"
-    return "\n".join(_lines(found, robot.model))
 
 
-def _lines(found: Diagnosis, model: Model) -> list[str]:
+def _lines(found: Diagnosis) -> list[str]:
     """The causes, or what the difference depends on; and a test."""
     if found.passed:
         return []
@@ -183,8 +193,6 @@ def _lines(found: Diagnosis, model: Model) -> list[str]:
 
 
 def _cause(cause: Cause, several: bool) -> list[str]:
-    from rttrr_pin.diagnosis.report import place, told
-
     lines = [f"cause{': one of several' if several else ''}: {told(cause)}", f"repair: {cause.repair}"]
     if where := place(cause):
         lines.append(f"see {where}")

@@ -57,7 +57,14 @@ def line_of(group: Sequence[Mutant]) -> str:
     sentence = first.hypothesis.sentence
     if first.numbers and len(first.numbers) == 1:
         sentence += f" ({values_of(first.hypothesis.values(first.numbers))})"
-    places = [own.hypothesis.link or own.hypothesis.joint or "every one" for own in others]
+    places = [own.hypothesis.link or own.hypothesis.joint or "all" for own in others]
     also = f"; also at {listed(places, 4)}" if others else ""
-    size = f"{100.0 * first.relative:.2g} %" if first.relative < 10.0 else f"{first.relative:.2g} times"
+    part = first.relative
+    size = (
+        f"{100 * part:.2g} %"
+        if part < 0.1
+        else f"{part:.0%}".replace("%", " %")
+        if part < 10.0
+        else f"{part:.2g} times"
+    )
     return f"  {size:>9} of {first.quantity} of {first.at}: {sentence}{also}"

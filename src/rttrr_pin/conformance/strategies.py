@@ -1,6 +1,6 @@
 """Strategies of Hypothesis: robots, and states of one, that shrink to few links and round numbers.
 
-`robots().flatmap(lambda robot: tuples(just(robot), states(robot)))` draws both, for a test that takes the pair.
+A test that takes a robot with a state draws both by `robots_in_motion`.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from rttrr_pin.validation.states import model_of
 if TYPE_CHECKING:
     from hypothesis.strategies import SearchStrategy
 
-__all__ = ["TYPES", "State", "robots", "states"]
+__all__ = ["TYPES", "State", "robots", "robots_in_motion", "states"]
 
 TYPES = ("revolute", "prismatic", "continuous", "planar", "floating", "fixed")
 """Types of joints, the simplest first."""
@@ -37,6 +37,9 @@ MOST = 60
 REACH, TURN, HALF = 5, 31, 6
 """Tenths: of positions [m], of angles [rad], of what a body extends to about its centre of mass [m sqrt(kg)]."""
 
+SIX, RANGES = 6, (20, 30, 100)
+"""Degrees of freedom of a joint at most, and the largest tenths of q, v and a."""
+
 BALL = (1, 0, 1, 0, 0, 1)
 """Tenths: the lower triangle of the simplest factor of second moments."""
 
@@ -47,7 +50,7 @@ ENTRIES = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1
 
 
 class State(NamedTuple):
-    """One state: coordinates (nq,) [rad or m], rates (nv,) and accelerations (nv,)."""
+    """One state: q, v, a. Coordinates (nq,) [rad or m], rates (nv,) and accelerations (nv,)."""
 
     q: Array
     v: Array
@@ -66,6 +69,7 @@ class _Joint:
         rpy: of the origin.
         axis: small whole numbers.
         body: mass, centre of mass, and a factor of the second moments of the link.
+        motion: in tenths q, v and a, of which a joint takes as many as it has; empty where only a robot is drawn.
     """
 
     kind: str
@@ -75,6 +79,16 @@ class _Joint:
     rpy: Sequence[int]
     axis: Sequence[int]
     body: _Body
+    motion: Sequence[Sequence[int]]
+
+
+@dataclass(frozen=True, slots=True)
+class _Parts:
+    """The root's body and motion, where it floats, and the joints with their links."""
+
+    root: _Body | None
+    motion: Sequence[Sequence[int]]
+    joints: Sequence[_Joint]
 
 
 @dataclass(frozen=True, slots=True)
@@ -109,6 +123,43 @@ def robots(
         InputError: an argument cannot be used, or hypothesis is not installed.
         UnknownNameError: there is no such type of joint.
     """
+    drawn = _drawn(most_links, types, trees, mimic, base, moving=False)
+    return drawn.map(lambda parts: _robot(parts, base))  # type: ignore[no-any-return]
+
+
+def robots_in_motion(
+    most_links: int = 6,
+    types: Sequence[str] = TYPES,
+    trees: bool = True,
+    mimic: bool = True,
+    base: Literal["fixed", "floating"] = "fixed",
+) -> SearchStrategy[tuple[Robot, State]]:
+    """Robots as `robots` draws them, each with a state: a link that is left out takes its part of the state with it.
+
+    So what fails shrinks further than by `states` of a robot that was drawn before.
+
+    Args:
+        most_links: as in `robots`, and so are the others.
+        types: of joints.
+        trees: whether links may carry several others.
+        mimic: whether joints may follow others.
+        base: "fixed" or "floating".
+
+    Raises:
+        InputError: an argument cannot be used, or hypothesis is not installed.
+        UnknownNameError: there is no such type of joint.
+    """
+    drawn = _drawn(most_links, types, trees, mimic, base, moving=True)
+
+    def made(parts: _Parts) -> tuple[Robot, State]:
+        robot = _robot(parts, base)
+        return robot, _state(robot, parts)
+
+    return drawn.map(made)  # type: ignore[no-any-return]
+
+
+def _drawn(most_links: int, types: Sequence[str], trees: bool, mimic: bool, base: str, moving: bool) -> Any:
+    """The parts of a robot, with their motion or without."""
     st = _strategies()
     most = whole_number("most_links", most_links, 1, MOST, str(MOST))
     choice("base", base, "fixed", "floating")
@@ -133,11 +184,18 @@ def robots(
         _tenths(TURN),
         st.sampled_from(AXES) | st.tuples(*[st.integers(-2, 2)] * 3).filter(any),
         body,
+        _motion() if moving else st.just(()),
     )
     chains = st.lists(joints, min_size=1, max_size=most).filter(lambda all: base == "floating" or _moves(all))
+<<<<<<< HEAD
     roots = body if base == "floating" else st.none()
     drawn: SearchStrategy[Robot] = st.builds(lambda root, chain: _robot(root, chain, base), roots, chains)
     return drawn
+=======
+    if base != "floating":
+        return st.builds(_Parts, st.none(), st.just(()), chains)
+    return st.builds(_Parts, body, _motion() if moving else st.just(()), chains)
+>>>>>>> 734a183 (Kit: robots that shrink together with their state, causes on a case's own states, a page, figures)
 
 
 def states(robot: Robot) -> SearchStrategy[State]:
@@ -158,8 +216,12 @@ def states(robot: Robot) -> SearchStrategy[State]:
 
     acceleration = np.full(model.nv, ACCELERATION)
     pairs = ((ranges.lower, ranges.upper), (-ranges.rate, ranges.rate), (-acceleration, acceleration))
+<<<<<<< HEAD
     drawn: SearchStrategy[State] = st.builds(made, *(_numbers(*pair) for pair in pairs))
     return drawn
+=======
+    return st.builds(made, *(_numbers(*pair) for pair in pairs))  # type: ignore[no-any-return]
+>>>>>>> 734a183 (Kit: robots that shrink together with their state, causes on a case's own states, a page, figures)
 
 
 def _strategies() -> Any:
@@ -173,27 +235,35 @@ def _strategies() -> Any:
     return strategies
 
 
-def _tenths(most: int) -> Any:
-    """Three numbers; most often zero, to which all three shrink at once."""
+def _tenths(most: int, count: int = 3) -> Any:
+    """Some numbers; often zero, to which all of them shrink at once."""
     st = _strategies()
-    return st.just((0, 0, 0)) | st.tuples(*[st.integers(-most, most)] * 3)
+    return st.just((0,) * count) | st.tuples(*[st.integers(-most, most)] * count)
+
+
+def _motion() -> Any:
+    """Tenths q, v, a of a joint of up to six."""
+    return _strategies().tuples(*(_tenths(most, SIX) for most in RANGES))
+
+
+def _state(robot: Robot, parts: _Parts) -> State:
+    """The numbers of each joint, in the order of the model."""
+    own = {f"joint_{i + 1}": joint.motion for i, joint in enumerate(parts.joints)}
+    rows = [(own.get(joint.name, parts.motion), joint.nv) for joint in robot.model.moving]
+    q, v, a = (np.array([x / 10 for motion, nv in rows for x in motion[k][:nv]], dtype=float) for k in range(3))
+    return State(robot.model.coordinates_at(q[None])[0], v, a)
 
 
 def _numbers(lower: Array, upper: Array) -> Any:
-    """A number for each degree of freedom; simplest where all are one, which a robot with fewer joints can have too."""
-    st, pairs = _strategies(), list(zip(lower.tolist(), upper.tolist(), strict=True))
-    common = float(lower.max()), float(upper.min())
-    several = st.tuples(*(_round(*pair) for pair in pairs))
-    if common[0] > common[1]:
-        return several
-    return _round(*common).map(lambda x: (x,) * len(pairs)) | several
+    """A number for each degree of freedom."""
+    return _strategies().tuples(*(_round(*pair) for pair in zip(lower.tolist(), upper.tolist(), strict=True)))
 
 
 def _round(lower: float, upper: float) -> SearchStrategy[float]:
     """Numbers of few digits within a range, those near zero the simplest; its lower end where there is none."""
     st, digits = _strategies(), 1
     if upper > lower:
-        digits = max(1, 2 - math.floor(math.log10(upper - lower)))
+        digits = max(1, 1 - math.floor(math.log10(upper - lower)))
     scale = 10**digits
     first, last = math.ceil(lower * scale), math.floor(upper * scale)
     return st.integers(first, last).map(lambda k: k / scale) if first <= last else st.just(lower)  # type: ignore[no-any-return]
@@ -203,9 +273,9 @@ def _moves(joints: Sequence[_Joint]) -> bool:
     return any(own.kind != "fixed" for own in joints)
 
 
-def _robot(root: _Body | None, joints: Sequence[_Joint], base: Literal["fixed", "floating"]) -> Robot:
+def _robot(parts: _Parts, base: Literal["fixed", "floating"]) -> Robot:
     """The robot of what was drawn; a failing example shows its text."""
-    text = _urdf(root, joints)
+    text = _urdf(parts.root, parts.joints)
     from hypothesis import currently_in_test_context, note
 
     if currently_in_test_context():
