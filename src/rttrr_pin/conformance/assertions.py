@@ -8,12 +8,8 @@ from typing import Any
 
 import numpy as np
 
-<<<<<<< HEAD
-from rttrr_pin.conformance.judging import Wanted, judge
-=======
 from rttrr_pin.conformance.causes import InPrecision
-from rttrr_pin.conformance.judge import PRECISIONS, Wanted, judge
->>>>>>> 734a183 (Kit: robots that shrink together with their state, causes on a case's own states, a page, figures)
+from rttrr_pin.conformance.judging import PRECISIONS, Wanted, judge
 from rttrr_pin.conformance.levels import LEVELS, Case, Level, cases
 from rttrr_pin.conformance.results import LevelResult
 from rttrr_pin.core.arrays import Array

@@ -187,15 +187,9 @@ def _drawn(most_links: int, types: Sequence[str], trees: bool, mimic: bool, base
         _motion() if moving else st.just(()),
     )
     chains = st.lists(joints, min_size=1, max_size=most).filter(lambda all: base == "floating" or _moves(all))
-<<<<<<< HEAD
-    roots = body if base == "floating" else st.none()
-    drawn: SearchStrategy[Robot] = st.builds(lambda root, chain: _robot(root, chain, base), roots, chains)
-    return drawn
-=======
     if base != "floating":
         return st.builds(_Parts, st.none(), st.just(()), chains)
     return st.builds(_Parts, body, _motion() if moving else st.just(()), chains)
->>>>>>> 734a183 (Kit: robots that shrink together with their state, causes on a case's own states, a page, figures)
 
 
 def states(robot: Robot) -> SearchStrategy[State]:
@@ -216,12 +210,8 @@ def states(robot: Robot) -> SearchStrategy[State]:
 
     acceleration = np.full(model.nv, ACCELERATION)
     pairs = ((ranges.lower, ranges.upper), (-ranges.rate, ranges.rate), (-acceleration, acceleration))
-<<<<<<< HEAD
     drawn: SearchStrategy[State] = st.builds(made, *(_numbers(*pair) for pair in pairs))
     return drawn
-=======
-    return st.builds(made, *(_numbers(*pair) for pair in pairs))  # type: ignore[no-any-return]
->>>>>>> 734a183 (Kit: robots that shrink together with their state, causes on a case's own states, a page, figures)
 
 
 def _strategies() -> Any:

@@ -47,11 +47,7 @@ class Program:
         arrays = [np.array(x, dtype=np.float64) for x in (q, v, a)]
         model, shape = self.variant.model, arrays[1].shape[:-1]
         sizes = (model.nq, model.nv, model.nv)
-<<<<<<< HEAD
         q, v, a = (x.reshape(-1, n) for x, n in zip(arrays, sizes, strict=True))  # fails for another robot
-=======
-        q, v, a = (x.reshape(-1, n) for x, n in zip(arrays, sizes, strict=True))  # an error where it is of another robot
->>>>>>> 734a183 (Kit: robots that shrink together with their state, causes on a case's own states, a page, figures)
         values = self.variant.evaluate(Batch(model, q, v, a))
         found: dict[str, Array] = {key: values[key].reshape(*shape, *values[key].shape[1:]) for key in self.quantities}
         return found["tau"] if tuple(found) == ("tau",) else found
