@@ -157,7 +157,7 @@ def test_no_true_error_exceeds_its_bound_in_trees(seed: int, base: Any) -> None:
     check(rttrr_pin.load(random_tree(seed, 7), base=base, friction=True), "mixed", seed)
 
 
-@pytest.mark.one_in(5)
+@pytest.mark.one_in(7)
 @pytest.mark.parametrize("sampling", slow_after(2, ["uniform", "large-velocities", "corners", "zeros", "one-joint"]))
 def test_no_true_error_exceeds_its_bound(robot: Robot, sampling: str) -> None:
     check(robot, sampling, 3)

@@ -54,6 +54,7 @@ def agree(
 # Numbers
 
 
+@pytest.mark.one_in(2)
 def test_the_specifications_numbers(robot: Robot) -> None:
     agree(robot, RESULTS)
     agree(robot, "tau", emitter="numpy")

@@ -42,7 +42,7 @@ def test_leading_axes_broadcast(kernel: Kernel) -> None:
         np.testing.assert_array_equal(wide[i, k], kernel(q[i, 0], v[0, k], a[2, 1]))
 
 
-@pytest.mark.one_in(5)
+@pytest.mark.one_in(8)
 @pytest.mark.parametrize("batch", [(), (4,), (0,), (2, 3)], ids=str)
 @pytest.mark.parametrize("text", ["no-joint", "root-alone"])
 def test_robots_without_a_joint(text: str, batch: tuple[int, ...], emitter: str) -> None:

@@ -228,6 +228,7 @@ def lumped_forces(model: Model, drawn: Batch) -> np.ndarray:
     return np.array([np.broadcast_to(x, len(drawn.q)) for x in tau]).reshape(model.nv, len(drawn.q)).T
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("base", ["fixed", "floating"])
 @pytest.mark.parametrize("seed", range(30))
 def test_lumping_leaves_the_driving_forces(seed: int, base: Any) -> None:

@@ -49,7 +49,7 @@ def moved(model: Model, joint: int, **changes: object) -> Model:
     return replace(model, joints=tuple(joints))
 
 
-@pytest.mark.one_in(4)
+@pytest.mark.one_in(8)
 @pytest.mark.parametrize("kind", ["revolute", "prismatic", "continuous"])
 @pytest.mark.parametrize("library", LIBRARIES)
 @pytest.mark.parametrize("tilt", [1e-16, 4e-15, 3e-14, 7e-13])

@@ -165,6 +165,7 @@ def test_a_state_gives_the_same_bits_in_any_batch() -> None:
                 np.testing.assert_array_equal(x[0], of_whole[key][k])
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("number", ["mass", "com", "inertia", "p"])
 @pytest.mark.parametrize("link", [0, 2, 4])
 def test_an_error_of_1e_10_in_one_number_is_seen(

@@ -105,7 +105,7 @@ def test_a_terminal_that_lacks_letters_gets_them_escaped(
     assert codes[0] == codes[1] < 2
 
 
-@pytest.mark.one_in(4)
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_full_disk_behind_the_output_is_an_error(
     command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

@@ -22,4 +22,4 @@ def test_a_limit_beyond_all_reason_is_none(limit: str, kind: str) -> None:
     robot = rttrr_pin.load(ARM.format(kind, limit))
     batch = Sampler(robot.model).draw(0, 100)
     assert np.abs(batch.q).max() < 10 and np.abs(batch.v).max() < 10
-    assert rttrr_pin.validate(robot, "recursion", "kernel", n_states=20).passed
+    assert rttrr_pin.validate(robot, "recursion", "lagrange", n_states=20).passed
