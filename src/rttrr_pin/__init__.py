@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rttrr_pin.auditing import audit as audit
     from rttrr_pin.auditing import read_publication as read_publication
     from rttrr_pin.compile import Kernel as Kernel
+    from rttrr_pin.conformance import conform as conform
     from rttrr_pin.core.conventions import Convention as Convention
     from rttrr_pin.core.identification import BaseParameters as BaseParameters
     from rttrr_pin.core.joint import Joint as Joint
@@ -56,6 +57,7 @@ __getattr__, __dir__, __all__ = lazy(
     {
         "auditing": ("audit", "read_publication"),
         "compile": ("Kernel",),
+        "conformance": ("conform",),
         "core.conventions": ("Convention",),
         "core.identification": ("BaseParameters",),
         "core.joint": ("Joint", "JointEffects", "Limits", "Mimic"),

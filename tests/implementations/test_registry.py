@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
-from rttrr_pin import validate
-from rttrr_pin.errors import ImplementationError, RttrrError
+from rttrr_pin import Model, validate
+from rttrr_pin.errors import ImplementationError, RefusalError, RttrrError
 from rttrr_pin.implementations import make_implementation, names
+from rttrr_pin.implementations.registry import for_one_robot
 from support.pendulum import pendulum
 
 MODULE = """
@@ -73,3 +77,40 @@ def test_a_package_does_not_replace_ours() -> None:
 def test_what_is_no_implementation(source: object) -> None:
     with pytest.raises(RttrrError):
         make_implementation(source, pendulum().model)  # type: ignore[arg-type]
+
+
+@pytest.mark.usefixtures("other_package")
+def test_a_class_or_a_function_of_the_model_is_made_for_the_robot() -> None:
+    """Also by its name in a module, and where it makes a function."""
+    import swinging  # type: ignore[import-not-found]
+
+    def of_model(model: Model) -> Any:
+        return lambda q, v, a: 0.6 * a + 9.81 * np.sin(q)
+
+    for source in (swinging.Swing, "swinging:Swing", of_model):
+        assert validate(pendulum(), source, "recursion", n_states=20).passed
+    assert make_implementation(of_model, pendulum().model).name == "of_model"
+
+
+@pytest.mark.usefixtures("other_package")
+def test_what_is_made_for_one_robot() -> None:
+    import swinging
+
+    one = (lambda q, v, a: a, lambda *state: state[2], np.add, "results.csv", f"{sys.executable} x.py")
+    several = ("kernel", "swing", swinging.Swing, "swinging:Swing", f"{sys.executable} x.py {{urdf}}")
+    assert [for_one_robot(own) for own in one] == [True] * len(one)
+    assert [for_one_robot(own) for own in several] == [False] * len(several)
+    assert not for_one_robot(make_implementation("recursion", pendulum().model))
+
+
+def test_not_implemented_is_a_refusal() -> None:
+    def maker(model: Model) -> Any:
+        raise NotImplementedError("pendulums")
+
+    def function(q: Any, v: Any, a: Any) -> Any:
+        raise NotImplementedError
+
+    with pytest.raises(RefusalError, match=r"^maker does not take robot .*: pendulums$"):
+        make_implementation(maker, pendulum().model)
+    with pytest.raises(RefusalError, match="^function does not offer this$"):
+        make_implementation(function, pendulum().model)

@@ -127,6 +127,17 @@ def calls() -> dict[str, Call]:
         ),
         "sample_states": (sample_states, {"robot": robot, "n": 10, "seed": 0, "payload": None}),
         "diagnose": (diagnose, {"robot": robot, **PROGRAMS, "n_states": 3, "seed": 0, "payload": None}),
+        "conform": (
+            rttrr_pin.conform,
+            {
+                "subject": "recursion",
+                "robots": [robot],
+                "levels": ["gravity"],
+                "n_states": 2,
+                "seed": 0,
+                "precision": "auto",
+            },
+        ),
         "check_laws": (
             rttrr_pin.check_laws,
             {"robot": robot, "subject": "kernel", "n_states": 2, **STATES, "select": ("E",)},
@@ -153,6 +164,7 @@ NAMES = (
     *("in_convention", "JointWrenches"),
     *("LinkWrenches", "Wrench", "RandomPayload", "JointEffects", "Joint", "Limits", "Mimic", "Link", "Model"),
     *("validate", "compare_state", "search_worst_state", "check_laws", "inspect", "derive", "read_publication"),
+    "conform",
     *("audit", "compare_robots", "sample_states", "diagnose", "diagnose_log"),
     *(
         "BaseParameters.of",

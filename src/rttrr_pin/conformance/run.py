@@ -14,7 +14,7 @@ from rttrr_pin.conformance.judging import PRECISIONS, Wanted, ask, judged, preci
 from rttrr_pin.conformance.levels import Case, cases
 from rttrr_pin.conformance.results import Conformance, LevelResult
 from rttrr_pin.core.arguments import choice
-from rttrr_pin.errors import ImplementationError, InputError, RttrrError
+from rttrr_pin.errors import ImplementationError, InputError, RttrrError, shortened
 from rttrr_pin.implementations import Evaluation, Implementation, label, make_implementation
 from rttrr_pin.implementations.function import Function, name_of
 from rttrr_pin.implementations.registry import Source, for_one_robot, is_table
@@ -64,6 +64,7 @@ def conform(
     """
     begin = time.perf_counter()
     choice("precision", precision, "auto", *PRECISIONS)
+    _check_lists(robots, levels)
     _check_subject(subject, robots)
     asked = cases(robots, levels, n_states, seed)
     programs = _programs(subject, asked, precision)
@@ -90,6 +91,16 @@ def conform(
         seconds=time.perf_counter() - begin,
         versions=versions(made[:1]),
     )
+
+
+def _check_lists(robots: object, levels: object) -> None:
+    """Robots and ids come in lists."""
+    for name, value, kind in (("robots", robots, Robot), ("levels", levels, str)):
+        if value is None:
+            continue
+        several = isinstance(value, list | tuple) and len(value) > 0
+        if not several or not all(isinstance(one, kind) for one in value):  # type: ignore[attr-defined]
+            raise InputError(f"{name} is {shortened(repr(value))}: pass a list of {kind.__name__}, or None for all")
 
 
 def _check_subject(subject: Source, robots: Sequence[Robot] | None) -> None:
@@ -121,7 +132,7 @@ def _programs(subject: Source, asked: Sequence[Case], precision: Wanted) -> dict
             try:
                 program = make_implementation(subject, case.robot.model)
                 if isinstance(program, Function) and precision != "auto":
-                    program.type = np.dtype(np.float64)  # judged as it is wanted, whatever it returns
+                    program.type, program.notes = np.dtype(np.float64), ()  # judged as is wanted, whatever it returns
                 made[id(case.robot)] = program
             except RttrrError as error:
                 made[id(case.robot)] = error

@@ -72,7 +72,9 @@ class Function:
         results, self.type = (together if self.takes_batches else alone), types[self.takes_batches]
         assert not isinstance(results, RttrrError)
         self.quantities = tuple(key for key in QUANTITIES if key in results)
-        self.notes = (f"{self.name} is judged as {self.type}, which it returns",) if self.type != np.float64 else ()
+        self.notes: tuple[str, ...] = (
+            (f"{self.name} is judged as {self.type}, which it returns",) if self.type != np.float64 else ()
+        )
 
     def evaluate(self, batch: Batch) -> Evaluation:
         """What the function returns, state by state or at once."""

@@ -104,9 +104,9 @@ def for_one_robot(source: Source) -> bool:
         return False
     if callable(source):
         return not _makes(source)
-    text = os.fspath(source)
-    if text in names():
+    if not isinstance(source, str | os.PathLike) or os.fspath(source) in names():
         return False
+    text = os.fspath(source)
     if is_table(text):
         return True
     if _is_command(text):
