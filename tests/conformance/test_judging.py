@@ -7,12 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rttrr_pin import InputError
-from rttrr_pin.conformance import Case, cases, conform, judge
+from rttrr_pin import InputError, JointEffects
+from rttrr_pin.conformance import Case, cases, conform, judge, level_robot
 from rttrr_pin.conformance.judging import precision_of
 from rttrr_pin.conformance.results import BINS
 from rttrr_pin.core.arrays import norm
-from rttrr_pin.core.model import Model
 from rttrr_pin.implementations import Batch, Evaluation, default_allowance, make_implementation
 from rttrr_pin.implementations.allowance import SINGLE
 from support.implementations import Altered
@@ -61,6 +60,8 @@ def test_single_precision_is_found_out_and_passes(program: Any) -> None:
     assert result.passed, result.summary()
     assert result.standing.not_offered == (("payload",) if program is SingleSpatial else ())
     assert not any(own.digits > 7.3 for own in result.results)
+    medians = [part.median for own in result.results for part in own.quantities if not np.isnan(part.median)]
+    assert 0.1 < np.median(medians) < 30.0
 
 
 def single_ratios(case: Case, program: Any) -> list[float]:
@@ -209,11 +210,13 @@ def test_there_is_no_other_precision() -> None:
 
 
 def test_armature_and_damping_that_cancel_are_no_false_alarm() -> None:
-    """What joints take adds up from terms, of which each is rounded."""
-    case = next(own for own in CASES if own.id == "effects-effects")
-    model: Model = case.robot.model
-    own = model.moving[0].effects
-    a = case.batch.a.copy()
-    a[:, 0] = -own.damping * case.batch.v[:, 0] / own.armature
-    batch = Batch(model, case.batch.q, case.batch.v, a)
-    assert (default_allowance(batch)["tau"][:, 0] > 2.0**-52 * np.abs(own.damping * batch.v[:, 0])).all()
+    """What joints take adds up from terms, of which each is rounded: 1000 a - 1000 v, beside bodies of some grams."""
+    robot = level_robot("small")
+    effects = JointEffects(armature=1e3, damping=1e3)
+    model = robot.with_joint_effects(dict.fromkeys(robot.joint_names, effects)).model
+    v = np.random.default_rng(0).uniform(1.0, 2.0, (50, model.nv)).astype(np.float32).astype(float)
+    batch = Batch(model, np.zeros((50, model.nq)), v, -v * (1 + 2.0**-20))
+    values, bounds = batch.recursion
+    error = np.abs(SingleRecursion(model).evaluate(batch).values["tau"] - values.tau)
+    assert (error <= default_allowance(batch, SINGLE)["tau"] + np.abs(bounds.tau)).all()
+    assert (default_allowance(batch)["tau"] > 4 * 2.0**-52 * 1e3 * v).all()

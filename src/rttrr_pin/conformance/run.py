@@ -17,6 +17,7 @@ from rttrr_pin.core.arguments import choice
 from rttrr_pin.errors import ImplementationError, InputError, RttrrError, shortened
 from rttrr_pin.implementations import Evaluation, Implementation, label, make_implementation
 from rttrr_pin.implementations.function import Function, name_of
+from rttrr_pin.implementations.program import Program
 from rttrr_pin.implementations.registry import Source, for_one_robot, is_table
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.run import versions
@@ -68,7 +69,7 @@ def conform(
     _check_subject(subject, robots)
     asked = cases(robots, levels, n_states, seed)
     programs = _programs(subject, asked, precision)
-    answers = [_answer(case, programs[id(case.robot)]) for case in asked]
+    answers = _answers(asked, programs)
     numbers = [own.values for own in answers if isinstance(own, Evaluation)]
     _check_offered(asked, programs, answers)
     own = PRECISIONS[precision] if precision != "auto" else precision_of(numbers)
@@ -131,6 +132,8 @@ def _programs(subject: Source, asked: Sequence[Case], precision: Wanted) -> dict
         if id(case.robot) not in made:
             try:
                 program = make_implementation(subject, case.robot.model)
+                if isinstance(program, Program):
+                    program.rest()
                 if isinstance(program, Function) and precision != "auto":
                     program.type, program.notes = np.dtype(np.float64), ()  # judged as is wanted, whatever it returns
                 made[id(case.robot)] = program
@@ -140,6 +143,18 @@ def _programs(subject: Source, asked: Sequence[Case], precision: Wanted) -> dict
     if len(errors) == len(made):
         raise errors[0]
     return made
+
+
+def _answers(asked: Sequence[Case], programs: dict[int, Implementation | RttrrError]) -> list[Answer]:
+    """What is said of each case, robot by robot, so that of a command's programs one runs at a time."""
+    found: dict[int, Answer] = {}
+    for robot, program in programs.items():
+        for k, case in enumerate(asked):
+            if id(case.robot) == robot:
+                found[k] = _answer(case, program)
+        if isinstance(program, Program):
+            program.rest()
+    return [found[k] for k in range(len(asked))]
 
 
 def _answer(case: Case, program: Implementation | RttrrError) -> Answer:

@@ -121,6 +121,12 @@ class Program:
             halves[key] = self._digits[key].with_all(Digits.of(texts)).half_units(x)
         return Evaluation(values, of_printed(batch, halves))
 
+    def rest(self) -> None:
+        """End the program; it is started again when it is asked again."""
+        if self._child is not None:
+            child, self._child = self._child, None
+            child.end(PATIENCE)
+
     def _replies(self, batch: Batch) -> list[dict[str, list[str]]]:
         """For each state the texts of the numbers by quantity; the program is ended where one cannot be had."""
         replies: list[dict[str, list[str]]] = []
