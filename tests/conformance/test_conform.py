@@ -142,6 +142,14 @@ def test_a_command_is_told_the_robot(tmp_path: Path) -> None:
         conform(shlex.join(words))
 
 
+def test_what_is_printed_to_few_digits_is_claimed_at_these(tmp_path: Path) -> None:
+    (tmp_path / "my_id.py").write_text(PROGRAM.replace(".tolist())", ".round(5).tolist())"))
+    command = f"{shlex.join([sys.executable, str(tmp_path / 'my_id.py')])} {{urdf}} {{base}} {{gravity}} {{effects}}"
+    result = conform(command, levels=["gravity"], n_states=2)
+    assert result.passed and result.printed is not None and result.printed < 10
+    assert result.claim().endswith(f" at {result.printed} digits")
+
+
 def test_what_cannot_be_asked_is_an_error() -> None:
     with pytest.raises(UnknownNameError, match="pinochio"):
         conform("pinochio")

@@ -219,6 +219,7 @@ class Conformance(Summarised):
         subject: name and version of the program.
         results: level by level, robot by robot.
         precision: whose rounding it is judged in, "float64" or "float32".
+        printed: the significant digits that it prints, at which it is judged; None where no digit was cut off.
         own_robots: whether it was asked with robots of the user's, and not with those of the levels.
         n_states: states of each case.
         seed: of the states.
@@ -230,6 +231,7 @@ class Conformance(Summarised):
     subject: str
     results: tuple[LevelResult, ...]
     precision: str
+    printed: int | None
     own_robots: bool
     n_states: int
     seed: int
@@ -253,9 +255,11 @@ class Conformance(Summarised):
         return tuple(dict.fromkeys(own.robot for own in self.results))
 
     def claim(self, most: int = len(LEVELS)) -> str:
-        """What was shown, and no more: on which robots if they are the user's, `Standing.sentence`, and in float32."""
+        """What was shown, and no more: `Standing.sentence`, on robots of the user's by name, and how precisely."""
         robots = f"{', '.join(self.robots)}: " if self.own_robots else ""
-        return f"{robots}{self.standing.sentence(most)}{' in float32' if self.precision == 'float32' else ''}"
+        single = " in float32" if self.precision == "float32" else ""
+        printed = "" if self.printed is None else f" at {self.printed} digits"
+        return f"{robots}{self.standing.sentence(most)}{single}{printed}"
 
     def summary(self) -> str:
         """How far the program gets; then a line for each case that was not passed."""
@@ -273,6 +277,7 @@ class Conformance(Summarised):
                 "claim": self.claim(),
                 "standing": standing,
                 "precision": self.precision,
+                "printed": self.printed,
                 "own_robots": self.own_robots,
                 "n_states": self.n_states,
                 "seed": self.seed,

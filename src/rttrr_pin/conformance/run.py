@@ -85,6 +85,7 @@ def conform(
         subject=_label(subject, made[0]),
         results=tuple(results),
         precision=own.name,
+        printed=min((one.digits for one in made if isinstance(one, Program) and one.digits), default=None),
         own_robots=robots is not None,
         n_states=len(asked[0].batch),
         seed=int(seed),
