@@ -41,7 +41,7 @@ def figures_of(score: MutationScore) -> dict[str, Any]:
         "mutants": len(score.mutants),
         "passing": len(score.passing),
         "kinds": {name: [total - seen, total] for name, (seen, total) in score.kinds.items()},
-        "largest": [{"sentence": own.hypothesis.sentence, "relative": own.relative} for own in largest],
+        "largest": [{"sentence": own.sentence, "relative": own.relative} for own in largest],
         "seconds": score.seconds,
     }
 

@@ -21,7 +21,7 @@ import pytest
 
 import rttrr_pin
 from rttrr_pin import errors
-from rttrr_pin.conformance import conform
+from rttrr_pin.conformance import Tolerances, conform, mutate
 from rttrr_pin.diagnosis import diagnose, diagnose_log, sample_states
 from rttrr_pin.implementations import make_implementation
 from rttrr_pin.validation import Sampler
@@ -84,6 +84,8 @@ def objects() -> dict[str, Any]:
         "LogDiagnosis": diagnose_log(robot, the_log(robot)),
         "Conformance": conform("recursion", levels=["gravity"], n_states=np.int64(2), seed=np.int64(2)),  # type: ignore[arg-type]
         "Conformance of nan": conform(not_a_number, [robot], ["rates"], n_states=2),
+        "MutationScore": mutate(robot, Tolerances(("gravity",), 2), np.int64(9), seed=np.int64(2)),  # type: ignore[arg-type]
+        "MutationScore of huge errors": mutate(robot, Tolerances(("gravity",), 2), 9, 1e300),
         "LawReport": rttrr_pin.check_laws(robot, n_states=np.int64(2), seed=np.int64(2)),  # type: ignore[arg-type]
         "Inspection": rttrr_pin.inspect(robot),
         "Comparison": rttrr_pin.compare_robots(robot, "trtrr", np.int64(3), seed=np.int64(2)),  # type: ignore[arg-type]
@@ -110,6 +112,8 @@ NAMES = (
         "Sample",
         "Conformance",
         "Conformance of nan",
+        "MutationScore",
+        "MutationScore of huge errors",
         "WorstCase",
         "LawReport",
         "Inspection",
@@ -156,6 +160,7 @@ def test_objects_can_be_compared_and_shown(name: str) -> None:
 AS_DATA = (
     *("Validation", "Validation of nan", "StateReport", "StateReport of nan", "WorstCase", "LawReport", "Inspection"),
     *("Diagnosis", "Diagnosis of a cause", "LogDiagnosis", "Conformance", "Conformance of nan"),
+    *("MutationScore", "MutationScore of huge errors"),
     *("Comparison", "Derivation", "Derivation in steps", "AuditResult", "Enclosures", "BaseParameters"),
     "JointWrenches",
 )

@@ -6,15 +6,16 @@ of a mass, 0.03 rad of a joint's zero, 0.01 kg m^2 of armature.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from rttrr_pin.core.arguments import not_negative
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import RandomPayload
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.diagnosis.engine.evidence import flat, places, rms, spread
@@ -37,8 +38,15 @@ TELLING = 100
 AT_ONCE = 256
 """Programs whose results are held at a time."""
 
+TINY = 1e-300
+"""What is divided by at least."""
+
 PROJECTIONS, SAME = 4, 1e-9
 """Changes whose projections on so many random directions are as near, relatively, are the same."""
+
+
+Planted: TypeAlias = tuple[int, tuple[float, ...]]
+"""A hypothesis by its index in the catalogue of a robot, and the numbers that it has."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -47,9 +55,15 @@ class Mutant:
 
     Attributes:
         index: of the hypothesis in the catalogue of the robot.
-        hypothesis: what is wrong.
         numbers: those that it has where they may be any.
-        others: hypotheses that give the same results.
+        hypothesis: what it is called, the same for each link or joint.
+        kind: convention, parameters, joint or mechanics.
+        sentence: what is wrong.
+        link: the link that it is about; None where it is about none, or about all.
+        joint: the joint, likewise.
+        values: the numbers by name, beside those of the robot's file.
+        line: the line of the recursion or of the robot's file to look at; else empty.
+        others: other hypotheses that give the same results, in sentences.
         quantity: where it changes most, beside what is expected there: tau, F, N, f or n,
         at: of this joint or link,
         change: by so much [unit],
@@ -58,14 +72,25 @@ class Mutant:
     """
 
     index: int
-    hypothesis: Hypothesis
     numbers: tuple[float, ...]
-    others: tuple[Hypothesis, ...]
+    hypothesis: str
+    kind: str
+    sentence: str
+    link: str | None
+    joint: str | None
+    values: Mapping[str, Any]
+    line: str
+    others: tuple[str, ...]
     quantity: str
     at: str
     change: float
     unit: str
     relative: float
+
+    @property
+    def planted(self) -> Planted:
+        """The hypothesis by its index, and its numbers."""
+        return self.index, self.numbers
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -112,7 +137,8 @@ def mutants(
 def _mutants(robot: Robot, keys: tuple[str, ...], payload: bool, size: float, seed: int) -> Mutants:
     """Those of the last calls are kept: several suites are compared on one robot."""
     batch = sample_states(robot, TELLING, seed, RandomPayload() if payload else None).states
-    tried = [(own, planted(own, size)) for own in hypotheses_of(robot.model)]
+    hypotheses = catalogue(robot.model)
+    tried = [(index, planted(own, size)) for index, own in enumerate(hypotheses)]
     expected = flat(dict(batch.recursion[0].items()), keys)
     least = 2.0 * spread(default_allowance(batch), keys)
     sizes = rms(expected)
@@ -122,22 +148,34 @@ def _mutants(robot: Robot, keys: tuple[str, ...], payload: bool, size: float, se
     units = [(key, at, unit) for key, at, unit in labels(robot.model) if key in keys]
     named = {(key, at): unit for key, at, unit in units}
     columns = places(robot.model, keys)
-    for index, ((own, numbers), values) in enumerate(zip(tried, results(robot, tried, batch), strict=True)):
-        with np.errstate(all="ignore"):
-            change = np.abs(flat(values, keys) - expected)
-            seen = ~(change <= least)
+    with np.errstate(all="ignore"):  # what overflows is wrong, and no warning
+        for (index, numbers), values in zip(tried, results(robot.model, tried, batch), strict=True):
+            change = flat(values, keys) - expected
+            seen = ~(np.abs(change) <= least)
             if not seen.any():
                 continue
-            part = ratio(np.where(seen, change, 0.0), np.broadcast_to(sizes, change.shape))
-            marks.append((flat(values, keys) - expected).ravel() / np.abs(least).ravel().clip(1e-300) @ directions)
-        finite = np.where(np.isfinite(change), part, np.inf)
-        k, column = np.unravel_index(int(np.argmax(finite)), finite.shape)
-        key, at = columns[int(column)]
-        kept.append(
-            Mutant(index, own, numbers, (), key, at, float(change[k, column]), named[key, at], float(finite[k, column]))
-        )
+            part = ratio(np.where(seen, np.abs(change), 0.0), np.broadcast_to(sizes, change.shape))
+            part = np.where(np.isfinite(change), part, np.inf)
+            k, column = np.unravel_index(int(np.argmax(part)), part.shape)
+            key, at = columns[int(column)]
+            where = key, at, float(abs(change[k, column])), named[key, at], float(part[k, column])
+            kept.append(_mutant(hypotheses[index], index, numbers, where))
+            marks.append(change.ravel() / least.ravel().clip(TINY) @ directions)
     distinct = _distinct(kept, np.array(marks).reshape(-1, PROJECTIONS))
     return Mutants(robot, keys, tuple(distinct), len(tried) - len(kept))
+
+
+@lru_cache(maxsize=8)
+def catalogue(model: Model) -> tuple[Hypothesis, ...]:
+    """All hypotheses about a robot."""
+    return tuple(hypotheses_of(model))
+
+
+def _mutant(
+    own: Hypothesis, index: int, numbers: tuple[float, ...], where: tuple[str, str, float, str, float]
+) -> Mutant:
+    values = dict(own.values(numbers)) if numbers else {}
+    return Mutant(index, numbers, own.id, own.kind, own.sentence, own.link, own.joint, values, own.line, (), *where)
 
 
 def planted(own: Hypothesis, size: float) -> tuple[float, ...]:
@@ -145,14 +183,14 @@ def planted(own: Hypothesis, size: float) -> tuple[float, ...]:
     return tuple(x + size * (y - x) for x, y in zip(own.neutral, own.start, strict=True))
 
 
-def results(robot: Robot, tried: Sequence[tuple[Hypothesis, tuple[float, ...]]], batch: Batch) -> Iterator[Values]:
+def results(model: Model, tried: Sequence[Planted], batch: Batch) -> Iterator[Values]:
     """What the program under each hypothesis computes, one after the other."""
-    base = Variant(robot.model)
-    errors = [own.mutation for own, _ in tried if own.mutation is not None]
-    wrong = together(errors, robot.model, batch)
-    rest = [own.apply(base, numbers) for own, numbers in tried if own.mutation is None]
-    others = _in_parts(rest, batch)
-    for own, _ in tried:
+    base, hypotheses = Variant(model), catalogue(model)
+    found = [(hypotheses[index], numbers) for index, numbers in tried]
+    errors = [own.mutation for own, _ in found if own.mutation is not None]
+    wrong = together(errors, model, batch)
+    others = _in_parts([own.apply(base, numbers) for own, numbers in found if own.mutation is None], batch)
+    for own, _ in found:
         yield next(others if own.mutation is None else wrong)
 
 
@@ -163,7 +201,7 @@ def _in_parts(variants: Sequence[Variant], batch: Batch) -> Iterator[Values]:
 
 def _distinct(found: Sequence[Mutant], marks: Array) -> list[Mutant]:
     """One for all that change the same, the first of them."""
-    stands: dict[int, list[Hypothesis]] = {}
+    stands: dict[int, list[str]] = {}
     order = np.lexsort((np.arange(len(found)), *(x for x in marks.T[::-1]))).tolist()
     groups: list[list[int]] = []
     for k in order:
@@ -173,24 +211,5 @@ def _distinct(found: Sequence[Mutant], marks: Array) -> list[Mutant]:
             groups.append([k])
     for group in groups:
         first, *others = sorted(group)
-        stands[first] = [found[k].hypothesis for k in others]
+        stands[first] = [found[k].sentence for k in others]
     return [replace(found[k], others=tuple(stands[k])) for k in sorted(stands)]
-
-
-def as_data(own: Mutant) -> dict[str, Any]:
-    """A mutant as data for JSON."""
-    return {
-        "hypothesis": own.hypothesis.id,
-        "kind": own.hypothesis.kind,
-        "sentence": own.hypothesis.sentence,
-        "link": own.hypothesis.link,
-        "joint": own.hypothesis.joint,
-        "values": dict(own.hypothesis.values(own.numbers)) if own.numbers else {},
-        "line": own.hypothesis.line,
-        "quantity": own.quantity,
-        "at": own.at,
-        "largest_change": own.change,
-        "unit": own.unit,
-        "relative_change": own.relative,
-        "the_same": [one.sentence for one in own.others],
-    }

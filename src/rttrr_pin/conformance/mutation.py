@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any, Protocol
 
-from rttrr_pin.conformance.mutants import SIZE, Mutant, Mutants, as_data, mutants
+from rttrr_pin.conformance.mutants import SIZE, Mutant, Mutants, mutants
 from rttrr_pin.conformance.suites import Tolerances
 from rttrr_pin.core.arguments import whole_number
 from rttrr_pin.errors import InputError
@@ -78,9 +78,9 @@ class MutationScore(Summarised):
         """By kind of hypothesis, how many are seen, of how many."""
         found = {}
         for kind, name in KINDS.items():
-            own = [one for one in self.mutants if one.hypothesis.kind == kind]
+            own = [one for one in self.mutants if one.kind == kind]
             if own:
-                found[name] = (len(own) - sum(one.hypothesis.kind == kind for one in self.passing), len(own))
+                found[name] = (len(own) - sum(one.kind == kind for one in self.passing), len(own))
         return found
 
     def summary(self) -> str:
@@ -99,7 +99,7 @@ class MutationScore(Summarised):
                 "score": self.score,
                 "mutants": len(self.mutants),
                 "kinds": {name: {"seen": seen, "of": total} for name, (seen, total) in self.kinds.items()},
-                "passing": [as_data(own) for own in self.passing],
+                "passing": [asdict(own) for own in self.passing],
                 "equivalent": self.equivalent,
                 "alike": self.alike,
                 "left_out": self.left_out,
@@ -168,5 +168,5 @@ def grouped(passing: Sequence[Mutant]) -> list[list[Mutant]]:
     """Mutants of one hypothesis at several places together, in the order of the first of each."""
     found: dict[str, list[Mutant]] = {}
     for own in passing:
-        found.setdefault(own.hypothesis.id, []).append(own)
+        found.setdefault(own.hypothesis, []).append(own)
     return list(found.values())

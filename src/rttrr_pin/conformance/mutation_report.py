@@ -54,10 +54,10 @@ def left_out(result: MutationScore) -> str:
 def line_of(group: Sequence[Mutant]) -> str:
     """One hypothesis, at the places where it passes."""
     first, *others = group
-    sentence = first.hypothesis.sentence
+    sentence = first.sentence
     if first.numbers and len(first.numbers) == 1:
-        sentence += f" ({values_of(first.hypothesis.values(first.numbers))})"
-    places = [own.hypothesis.link or own.hypothesis.joint or "all" for own in others]
+        sentence += f" ({values_of(first.values)})"
+    places = [own.link or own.joint or "all" for own in others]
     also = f"; also at {listed(places, 4)}" if others else ""
     part = first.relative
     size = (

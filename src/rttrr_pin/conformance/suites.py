@@ -10,6 +10,7 @@ import numpy as np
 from rttrr_pin.conformance.levels import LEVELS, MOST
 from rttrr_pin.conformance.mutants import Mutants, results
 from rttrr_pin.core.arguments import names_of, not_negative, whole_number
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.diagnosis.engine.evidence import flat, joined, loaded, shape_of_loads, spread
@@ -105,18 +106,21 @@ class Tolerances:
     def sees(self, mutants: Mutants) -> Iterator[bool]:
         """Of each mutant whether a test would fail on it."""
         keys = self.quantities
-        tried = [(own.hypothesis, own.numbers) for own in mutants.found]
+        tried = [own.planted for own in mutants.found]
         seen = np.zeros(len(tried), dtype=bool)
-        for batch in self.batches(mutants.robot.model):
-            expected = flat(dict(batch.recursion[0].items()), keys)
-            if self.atol is None:
-                allowed = 2.0 * spread(default_allowance(batch), keys)
-            else:
-                allowed = self.atol + self.rtol * np.abs(expected)
-            for k, values in enumerate(results(mutants.robot, tried, batch)):
-                with np.errstate(invalid="ignore", over="ignore"):
+        with np.errstate(all="ignore"):  # what overflows is seen
+            for batch in self.batches(mutants.robot.model):
+                expected = flat(dict(batch.recursion[0].items()), keys)
+                allowed = self._allowed(batch, expected)
+                for k, values in enumerate(results(mutants.robot.model, tried, batch)):
                     seen[k] |= not (np.abs(flat(values, keys) - expected) <= allowed).all()
         return iter(seen.tolist())
+
+    def _allowed(self, batch: Batch, expected: Array) -> Array:
+        """How far each number may be off."""
+        if self.atol is None:
+            return 2.0 * spread(default_allowance(batch), self.quantities)
+        return self.atol + self.rtol * np.abs(expected)
 
 
 def _states(kind: str, model: Model, count: int, seed: int) -> Batch:
