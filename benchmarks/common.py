@@ -6,6 +6,8 @@ import argparse
 import json
 import os
 import platform
+import re
+from collections.abc import Iterable
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -14,6 +16,9 @@ RESULTS = Path(__file__).parent / "results"
 
 WIDTH = 100
 """Of a line of results, about; a record of numbers and words alone is one line, however long."""
+
+Lines = list[str]
+"""Of a page."""
 
 PACKAGES = ("rttrr-pin", "pin", "numpy", "yourdfpy", "llvmlite")
 
@@ -73,6 +78,13 @@ def written(value: Any, indent: int = 0) -> str:
         return left + ", ".join(pieces) + right
     start = "\n" + " " * (indent + 1)
     return left + start + f",{start}".join(pieces) + "\n" + " " * indent + right
+
+
+def table(header: Iterable[Any], rows: Iterable[Iterable[Any]]) -> Lines:
+    """A table in Markdown."""
+    cells = [[str(cell) for cell in row] for row in (header, *rows)]
+    lines = [re.sub(r" +(?=\|)", " ", f"| {' | '.join(row)} |") for row in cells]
+    return [lines[0], "|" + "---|" * len(cells[0]), *lines[1:]]
 
 
 def finish(name: str, figures: dict[str, Any], save: bool, show: bool = True) -> None:

@@ -1,8 +1,9 @@
-"""The peers as kernel_speed.py sees them: where they are installed, and one run of one of them."""
+"""The peers as kernel_speed.py sees them, and where they and the libraries of conform/run.py are installed."""
 
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 import tempfile
@@ -17,7 +18,9 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 PEERS = Path(__file__).parent / "peers"
-ENVIRONMENTS = PEERS.parent.parent / ".peers"
+ENVIRONMENTS = Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache", "rttrr-pin", "peers")
+"""Unless another folder is named by --envs."""
+
 OWN = "own"
 """The environment of peers that run in the interpreter of kernel_speed.py."""
 

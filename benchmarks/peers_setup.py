@@ -1,7 +1,7 @@
-"""Make one virtual environment for each peer of kernel_speed.py, as benchmarks/peers/requirements.toml lists them.
+"""Make the environments of kernel_speed.py and conform/run.py, as benchmarks/peers/requirements.toml lists them.
 
 Run: python benchmarks/peers_setup.py [--envs FOLDER] [--only NAME ...]. What fails is told, and the rest goes on;
-exit 1 if something failed. The peers need about 5 GB together, and gcc and g++ for those that are compiled.
+exit 1 if something failed. They need about 10 GB together, and the peers gcc and g++ for those that are compiled.
 """
 
 from __future__ import annotations

@@ -9,18 +9,18 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from common import machine_of, result
+from common import Lines, machine_of, result, table
+from conform_tables import CONFORM
 from rttrr_pin.core.conventions import CONVENTIONS, POINTS
 
 TOP = Path(__file__).parents[1]
 
 PAGES = [TOP / "README.md", *sorted((TOP / "docs").glob("*.md"))]
 
-Lines = list[str]
 Rows = list[dict[str, Any]]
 
 ROBOTS = {"rttrr": "RTTRR", "ur5_robot": "UR5", "panda": "Panda with fingers", "talos_reduced": "Talos reduced"}
@@ -33,13 +33,6 @@ STATES = 100_000
 OURS = {"kernel_rows": "rttrr-pin, rows (N, n)", "kernel_columns": "rttrr-pin, columns (n, N)"}
 
 LIMITS = {"copy": "limit: copy of the same bytes"}
-
-
-def table(header: Iterable[Any], rows: Iterable[Iterable[Any]]) -> Lines:
-    """A table in Markdown."""
-    cells = [[str(cell) for cell in row] for row in (header, *rows)]
-    lines = [re.sub(r" +(?=\|)", " ", f"| {' | '.join(row)} |") for row in cells]
-    return [lines[0], "|" + "---|" * len(cells[0]), *lines[1:]]
 
 
 def measured(data: dict[str, Any], script: str) -> str:
@@ -500,7 +493,7 @@ TABLES: dict[str, Callable[[], Lines]] = {
     "mutation scores": mutation_scores, "operations": operations,
     "peers": peers, "robots": robots, "speed": speed, "three numbers": three_numbers,
     "vectors": vectors,
-}  # fmt: skip
+} | CONFORM  # fmt: skip
 """By the name in the marker."""
 
 MARKED = re.compile(r"(<!-- table: ([\w ]+) -->\n).*?(<!-- end: \2 -->)", re.DOTALL)
