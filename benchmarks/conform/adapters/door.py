@@ -249,12 +249,9 @@ TREES = frozenset({"branches", "prismatic"})
 
 
 def in_file(text: str) -> str:
-    """The path of a file with a text, for libraries that read no text; it stays until the process ends."""
-    with tempfile.NamedTemporaryFile("w", suffix=".urdf", delete=False) as file:
+    """The path of a file with a text, for libraries that read no text; it goes with the folder that `serve` makes."""
+    with tempfile.NamedTemporaryFile("w", suffix=".urdf", dir=Path.cwd(), delete=False) as file:
         file.write(text)
-    import atexit
-
-    atexit.register(lambda: Path(file.name).unlink(missing_ok=True))
     return file.name
 
 
@@ -317,12 +314,15 @@ def serve(adapter: type[Adapter]) -> None:
     if chosen.about:
         replies.write(json.dumps(_about(adapter)) + "\n")
         return
+    urdf, states = (path and path.resolve() for path in (chosen.urdf, chosen.time))
+    folder = tempfile.TemporaryDirectory()
+    os.chdir(folder.name)  # what libraries write beside them goes with it
     try:
-        robot = Robot.read(chosen.urdf, chosen.base, chosen.gravity, chosen.effects)
+        robot = Robot.read(urdf, chosen.base, chosen.gravity, chosen.effects)
         refuse(adapter, robot)
         library = adapter(robot, np.dtype(chosen.real).type)
         if chosen.time:
-            replies.write(json.dumps(_timed(library, chosen.time, chosen.counts)) + "\n")
+            replies.write(json.dumps(_timed(library, states, chosen.counts)) + "\n")
         else:
             for line in sys.stdin:
                 replies.write(_answer(library, json.loads(line)) + "\n")
