@@ -194,6 +194,7 @@ CAUSES = {
 }
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize("fault", CAUSES)
 @pytest.mark.parametrize("single", [False, True])
 def test_the_cause_is_named(fault: str, single: bool) -> None:

@@ -44,6 +44,7 @@ def test_right_programs_pass_every_level(name: str) -> None:
     assert result.precision == "float64" and result.claim() == "14 of 14"
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("fault", PLANTED)
 def test_a_planted_fault_fails_at_its_level(fault: str) -> None:
     """The first that fails is the one that asks for it; where only one asks, it is the only one."""
@@ -83,7 +84,7 @@ def test_rounding_to_single_precision_is_never_a_fault(n_states: int, program: A
     for case in cases(n_states=n_states):
         if program is SingleRecursion or not case.batch.loads:
             worst = max(single_ratios(case, program))
-            assert 0.0 < worst < 0.5, case.id
+            assert 0.0 < worst < 0.2, case.id
 
 
 @pytest.mark.parametrize("case", CASES, ids=lambda case: case.id)

@@ -156,8 +156,9 @@ def validate(
     Args:
         robot: the robot.
         subject: the program that is judged: a name (`"kernel"`, `"recursion"`, `"pinocchio"`, `"mujoco"`,
-            `"lagrange"`), an `Implementation`, a function f(q, v, a) of one state or a batch, the path of a table of
-            results, or the command line of a program.
+            `"lagrange"`), an `Implementation`, a function f(q, v, a) of one state or a batch, a class or a function of
+            one argument, the `Model`, that makes either, the path of a table of results, or the command line of a
+            program.
         reference: what it is compared with, likewise; several in a list.
         n_states: how many states; of a table all of its own.
         seed: of the generator; the same seed gives the same states.
