@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
+from rttrr_pin.conformance.drawn import AXES, DrawnBody, DrawnJoint, DrawnRobot, text_of
 from rttrr_pin.core.arguments import choice, whole_number
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.errors import InputError, UnknownNameError
@@ -28,9 +28,6 @@ __all__ = ["TYPES", "State", "robots", "robots_in_motion", "states"]
 TYPES = ("revolute", "prismatic", "continuous", "planar", "floating", "fixed")
 """Types of joints, the simplest first."""
 
-FOLLOWING = ("revolute", "prismatic", "continuous")
-"""Types that may follow another by <mimic>."""
-
 MOST = 60
 """Links of a robot."""
 
@@ -43,11 +40,6 @@ SIX, RANGES = 6, (20, 30, 100)
 BALL = (1, 0, 1, 0, 0, 1)
 """Tenths: the lower triangle of the simplest factor of second moments."""
 
-AXES = ((0, 0, 1), (1, 0, 0), (0, 1, 0))
-"""The simplest directions; others are of small whole numbers."""
-
-ENTRIES = {"ixx": (0, 0), "ixy": (0, 1), "ixz": (0, 2), "iyy": (1, 1), "iyz": (1, 2), "izz": (2, 2)}
-
 
 class State(NamedTuple):
     """One state: q, v, a. Coordinates (nq,) [rad or m], rates (nv,) and accelerations (nv,)."""
@@ -55,49 +47,6 @@ class State(NamedTuple):
     q: Array
     v: Array
     a: Array
-
-
-@dataclass(frozen=True, slots=True)
-class _Joint:
-    """What is drawn of a joint and its link; positions and angles in tenths.
-
-    Attributes:
-        kind: type of the joint.
-        back: how many links before the last one its parent is.
-        follows: the how-manieth last of the joints before it that it follows, where it can; 0 for none.
-        xyz: of the origin.
-        rpy: of the origin.
-        axis: small whole numbers.
-        body: mass, centre of mass, and a factor of the second moments of the link.
-        motion: in tenths q, v and a, of which a joint takes as many as it has; empty where only a robot is drawn.
-    """
-
-    kind: str
-    back: int
-    follows: int
-    xyz: Sequence[int]
-    rpy: Sequence[int]
-    axis: Sequence[int]
-    body: _Body
-    motion: Sequence[Sequence[int]]
-
-
-@dataclass(frozen=True, slots=True)
-class _Parts:
-    """The root's body and motion, where it floats, and the joints with their links."""
-
-    root: _Body | None
-    motion: Sequence[Sequence[int]]
-    joints: Sequence[_Joint]
-
-
-@dataclass(frozen=True, slots=True)
-class _Body:
-    """Tenths: mass [kg], centre of mass [m], and lower triangle L of second moments L L^T about it [m sqrt(kg)]."""
-
-    mass: int
-    com: Sequence[int]
-    factor: Sequence[int]
 
 
 def robots(
@@ -151,7 +100,7 @@ def robots_in_motion(
     """
     drawn = _drawn(most_links, types, trees, mimic, base, moving=True)
 
-    def made(parts: _Parts) -> tuple[Robot, State]:
+    def made(parts: DrawnRobot) -> tuple[Robot, State]:
         robot = _robot(parts, base)
         return robot, _state(robot, parts)
 
@@ -170,13 +119,13 @@ def _drawn(most_links: int, types: Sequence[str], trees: bool, mimic: bool, base
     if base == "fixed" and not set(own) - {"fixed"}:
         raise InputError(f"types are {own}: expected at least one that moves, such as 'revolute'")
     body = st.builds(
-        _Body,
+        DrawnBody,
         st.integers(-9, 40).map(lambda k: 10 + k),
         _tenths(REACH),
         st.just(BALL) | st.tuples(*(st.integers(1 if own else -HALF, HALF) for own in BALL)),
     )
     joints = st.builds(
-        _Joint,
+        DrawnJoint,
         st.sampled_from(own),
         st.integers(0, most if trees else 0),
         st.integers(0, most if mimic else 0),
@@ -188,8 +137,8 @@ def _drawn(most_links: int, types: Sequence[str], trees: bool, mimic: bool, base
     )
     chains = st.lists(joints, min_size=1, max_size=most).filter(lambda all: base == "floating" or _moves(all))
     if base != "floating":
-        return st.builds(_Parts, st.none(), st.just(()), chains)
-    return st.builds(_Parts, body, _motion() if moving else st.just(()), chains)
+        return st.builds(DrawnRobot, st.none(), st.just(()), chains)
+    return st.builds(DrawnRobot, body, _motion() if moving else st.just(()), chains)
 
 
 def states(robot: Robot) -> SearchStrategy[State]:
@@ -236,7 +185,7 @@ def _motion() -> Any:
     return _strategies().tuples(*(_tenths(most, SIX) for most in RANGES))
 
 
-def _state(robot: Robot, parts: _Parts) -> State:
+def _state(robot: Robot, parts: DrawnRobot) -> State:
     """The numbers of each joint, in the order of the model."""
     own = {f"joint_{i + 1}": joint.motion for i, joint in enumerate(parts.joints)}
     rows = [(own.get(joint.name, parts.motion), joint.nv) for joint in robot.model.moving]
@@ -259,53 +208,15 @@ def _round(lower: float, upper: float) -> SearchStrategy[float]:
     return st.integers(first, last).map(lambda k: k / scale) if first <= last else st.just(lower)  # type: ignore[no-any-return]
 
 
-def _moves(joints: Sequence[_Joint]) -> bool:
+def _moves(joints: Sequence[DrawnJoint]) -> bool:
     return any(own.kind != "fixed" for own in joints)
 
 
-def _robot(parts: _Parts, base: Literal["fixed", "floating"]) -> Robot:
+def _robot(parts: DrawnRobot, base: Literal["fixed", "floating"]) -> Robot:
     """The robot of what was drawn; a failing example shows its text."""
-    text = _urdf(parts.root, parts.joints)
+    text = text_of(parts.root, parts.joints)
     from hypothesis import currently_in_test_context, note
 
     if currently_in_test_context():
         note(text)
     return load(text, base=base)
-
-
-def _urdf(root: _Body | None, joints: Sequence[_Joint]) -> str:
-    lines = ['<robot name="drawn">', f'  <link name="base">{"" if root is None else _inertial(root)}</link>']
-    lead: list[int] = []
-    for i, own in enumerate(joints):
-        parent = f"link_{max(i - 1 - own.back, -1) + 1}" if i > own.back else "base"
-        leader = lead[-own.follows] if own.kind in FOLLOWING and 0 < own.follows <= len(lead) else None
-        lines += [f'  <link name="link_{i + 1}">{_inertial(own.body)}</link>', *_joint(i, own, parent, leader)]
-        if own.kind in FOLLOWING and leader is None:
-            lead.append(i)
-    return "\n".join([*lines, "</robot>"])
-
-
-def _inertial(body: _Body) -> str:
-    """Second moments L L^T are those of a possible body; the tensor is their trace times 1, less them."""
-    L = np.zeros((3, 3), dtype=np.int64)
-    L[np.tril_indices(3)] = body.factor
-    moments = L @ L.T
-    tensor = np.trace(moments) * np.eye(3, dtype=np.int64) - moments
-    entries = " ".join(f'{name}="{tensor[at] / 100:g}"' for name, at in ENTRIES.items())
-    origin = f'<origin xyz="{_decimals(body.com)}"/>' if any(body.com) else ""
-    return f'<inertial>{origin}<mass value="{body.mass / 10:g}"/><inertia {entries}/></inertial>'
-
-
-def _joint(i: int, own: _Joint, parent: str, leader: int | None) -> list[str]:
-    names = f'<parent link="{parent}"/><child link="link_{i + 1}"/>'
-    origin = f'<origin xyz="{_decimals(own.xyz)}" rpy="{_decimals(own.rpy)}"/>' if any((*own.xyz, *own.rpy)) else ""
-    moves = ""
-    if own.kind not in ("fixed", "floating"):
-        axis = AXES[0] if own.kind == "planar" else own.axis
-        moves = f'<axis xyz="{" ".join(map(str, axis))}"/><limit lower="-2" upper="2" velocity="3" effort="10"/>'
-    mimic = "" if leader is None else f'<mimic joint="joint_{leader + 1}" multiplier="-2" offset="0.5"/>'
-    return [f'  <joint name="joint_{i + 1}" type="{own.kind}">{names}{origin}{moves}{mimic}</joint>']
-
-
-def _decimals(tenths: Sequence[int]) -> str:
-    return " ".join(f"{k / 10:g}" for k in tenths)
