@@ -176,6 +176,18 @@ def test_what_cannot_be_asked_is_an_error() -> None:
         conform(OnlyPayloads, levels=["gravity"], n_states=2)
 
 
+def test_a_program_that_tires_fails() -> None:
+    """It answers when it is tried, and then no more: there is no number that tells its precision."""
+
+    def tired(model: Model) -> Callable[..., Any]:
+        calls = iter([np.zeros(model.nv)] * 3)
+        return lambda q, v, a: next(calls)
+
+    result = conform(tired, levels=["gravity"], n_states=4)
+    assert not result.passed and result.claim() == "0 of 14 levels; failed: gravity"
+    assert result.precision == "float64" and result.results[0].outcome == "error"
+
+
 def test_a_program_that_crashes_on_a_robot_fails_there() -> None:
     def fragile(model: Model) -> Any:
         if len(model.links) > 20:

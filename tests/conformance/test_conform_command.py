@@ -56,6 +56,7 @@ UNUSABLE = {
     "a table": (["results.csv"], "is a table, with states of its own"),
     "one robot": (["support.implementations:still"], "rttrr-pin conform SUBJECT ROBOT"),
     "no level": (["recursion", "--levels", "gravty"], "did you mean gravity"),
+    "levels without a name": (["recursion", "--levels", ","], "--levels is ','"),
     "no states": (["recursion", "-n", "0"], "-n is 0"),
     "precision": (["recursion", "--precision", "float16"], "'float16' is not one of"),
     "badge": (["recursion", "--badge", "x.png"], "expected the name of a .svg or .json file"),

@@ -152,6 +152,13 @@ def test_what_is_not_finite_is_a_failure() -> None:
     assert (worst.at, worst.state, worst.error) == ("link_3", 1, np.inf) and np.isnan(worst.eps)
 
 
+def test_no_digit_is_no_less_than_none() -> None:
+    def zero(values: Any, batch: Batch) -> None:
+        values["tau"][:] = 0.0
+
+    assert f"{judge(ARM, recursion(ARM, zero)).digits:.1f}" == "0.0"
+
+
 def test_every_number_stands_in_one_bin() -> None:
     def spoil(values: dict[str, Any], batch: Batch) -> None:
         values["f"][:, 1] *= 1.0 + 1e-9

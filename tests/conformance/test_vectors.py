@@ -162,7 +162,7 @@ def test_a_lower_end_above_the_upper_is_refused(copy: Path) -> None:
         return "\n".join(map(",".join, rows)) + "\n"
 
     altered(copy, "mimic/truth.csv", exchanged)
-    with pytest.raises(InputError, match="expected lower <= upper"):
+    with pytest.raises(InputError, match=r"between -?\d[^ (]* and -?\d[^ (]*: expected lower <= upper"):
         read_vectors(copy)
 
 
@@ -262,3 +262,57 @@ def test_the_saved_check_found_nothing_outside() -> None:
     for own in result["robots"].values():
         assert own["states"] >= 1000
         assert own["widths"]["more, near zero"] == own["widths"]["three"] == 0
+
+
+def meta_with(change: Callable[[dict[str, Any]], Any]) -> Callable[[str], str]:
+    def changed(text: str) -> str:
+        meta = json.loads(text)
+        change(meta)
+        return json.dumps(meta)
+
+    return changed
+
+
+def resealed(folder: Path, file: str, change: Callable[[str], str]) -> None:
+    """Like `altered`, of meta.json itself."""
+    path = folder / file
+    path.write_text(change(path.read_text()))
+    manifest = json.loads((folder / "manifest.json").read_text())
+    manifest["robots"][path.parent.name] = sha256(path.read_bytes())
+    (folder / "manifest.json").write_text(json.dumps(manifest))
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (lambda meta: meta["sha256"].pop("truth.csv"), r"has no SHA-256 of truth\.csv"),
+        (lambda meta: meta.update(sha256=[]), "meta.json is of another form"),
+        (lambda meta: meta["levels"][1].update(first_row=0), "begins at row 0, expected 3"),
+        (lambda meta: meta.update(levels=None), "meta.json is of another form"),
+        (lambda meta: meta.pop("links"), "meta.json lacks 'links'"),
+        (lambda meta: meta.update(base=5), r"arm6.robot\.urdf: .*is 5"),
+    ],
+    ids=["no sum", "sums", "row", "levels", "links", "base"],
+)
+def test_a_description_that_says_too_little_is_refused(
+    copy: Path, change: Callable[[dict[str, Any]], Any], sentence: str
+) -> None:
+    """A file without a sum would not be checked, and rows that are passed over not be seen."""
+    resealed(copy, "arm6/meta.json", meta_with(change))
+    with pytest.raises(InputError, match=sentence):
+        read_vectors(copy)
+
+
+def test_a_table_that_is_no_text_is_refused(copy: Path) -> None:
+    (copy / "arm6" / "truth.csv").write_bytes(b"\xff\xfe\x00")
+    resealed(
+        copy, "arm6/meta.json", meta_with(lambda meta: meta["sha256"].update({"truth.csv": sha256(b"\xff\xfe\x00")}))
+    )
+    with pytest.raises(InputError, match=r"truth\.csv is no table of UTF-8 text"):
+        read_vectors(copy)
+
+
+def test_a_name_in_place_of_a_urdf_loads_no_other_robot(copy: Path) -> None:
+    altered(copy, "arm6/robot.urdf", lambda text: "rttrr")
+    with pytest.raises(InputError, match=r"robot\.urdf: is no URDF"):
+        read_vectors(copy)

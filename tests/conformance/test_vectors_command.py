@@ -28,7 +28,8 @@ def test_own_robots_are_written_and_checked(tmp_path: Path, capsys: pytest.Captu
     ("words", "sentence"),
     [
         ([], "-o FOLDER"),
-        (["-o", "OUT", "--check", "OUT"], "-o FOLDER"),
+        (["-o", "OUT", "--check", "OUT"], "writes nothing: leave out -o"),
+        (["trr", "--check", "OUT"], "writes nothing: leave out trr"),
         (["-o", "OUT", "--base", "floating"], "--base goes with a robot"),
         (["-o", "OUT", "--level", "gravty"], "did you mean gravity"),
         (["trr", "-o", "OUT", "--level", "sixty"], "no level applies"),

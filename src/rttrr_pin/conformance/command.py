@@ -95,6 +95,8 @@ def conform(
     own = _robots(subject, robots, how)
     check_targets(targets, sources)
     chosen = [one for own_levels in levels for one in own_levels.replace(",", " ").split()]
+    if levels and not chosen:
+        raise InputError(f"--levels is {levels[0]!r}: expected the name of a level, such as gravity; without it, all")
     with progress(None, quiet, "cases judged and explained") as advance:
         result = run(subject, own, chosen or None, states, seed, precision, not no_diagnose, advance)
     write_json(json, result.to_dict)

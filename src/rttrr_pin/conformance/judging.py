@@ -83,7 +83,8 @@ def precision_of(results: Iterable[Mapping[str, Array]]) -> Precision:
     A double that is computed as one has a chance of 2^-29 to be a float32; a number of eight or nine digits one of
     1/2 or 1/6 to be what is printed of one. Small integers and short decimals say nothing, nor does what is not finite.
     """
-    numbers = np.unique(np.concatenate([np.abs(x).ravel() for values in results for x in values.values()]))
+    found = [np.abs(x).ravel() for values in results for x in values.values()]
+    numbers = np.unique(np.concatenate([*found, np.empty(0)]))  # none where the program failed each time
     numbers = numbers[np.isfinite(numbers) & (numbers > 0.0)]
     if len(numbers) < DISTINCT:
         return DOUBLE
@@ -205,4 +206,4 @@ def _digits(error: Array, allowance: Array, sizes: Array, precision: Precision) 
         return math.nan
     with np.errstate(divide="ignore"):
         digits = -np.log10(np.where(np.isfinite(error), error, sizes)[told] / sizes[told])
-    return float(np.clip(digits, 0.0, -math.log10(precision.eps / 2)).min())
+    return float(np.clip(digits, 0.0, -math.log10(precision.eps / 2)).min()) + 0.0  # never -0.0

@@ -13,7 +13,7 @@ from rttrr_pin.conformance.mjcf_file import Mjcf
 from rttrr_pin.conformance.vector_tables import ProvenCase, ends_of, widths
 from rttrr_pin.core.joint import EFFECTS, Joint, JointEffects
 from rttrr_pin.core.model import Model
-from rttrr_pin.errors import InputError, LoadWarning
+from rttrr_pin.errors import InputError, LoadWarning, RttrrError
 from rttrr_pin.implementations.text_results import column_names
 from rttrr_pin.loading import load
 from rttrr_pin.robot import Robot
@@ -147,6 +147,40 @@ def robot_of(urdf: str, meta: dict[str, Any]) -> Robot:
             f"{', '.join(robot.model.link_names)}: vectors are of robots as their file has them; load the URDF"
         )
     return robot
+
+
+def check_meta(path: Path, meta: dict[str, Any]) -> None:
+    """Refuse what says less of the tables than it must.
+
+    Raises:
+        InputError: a file has no SHA-256, or the rows of a level do not begin where those of the one before end.
+    """
+    lacking = [name for name in (URDF, STATES, TRUTH) if not isinstance(meta["sha256"].get(name), str)]
+    if lacking:
+        raise InputError(f"{path} has no SHA-256 of {', '.join(lacking)}: fetch or write it again")
+    row = 0
+    for level in meta["levels"]:
+        if level["first_row"] != row:
+            raise InputError(
+                f"{path}: level {level['id']} begins at row {level['first_row']}, expected {row}: fetch or write it "
+                "again"
+            )
+        row += level["states"]
+
+
+def read_robot(path: Path, content: bytes, meta: dict[str, Any]) -> Robot:
+    """`robot_of` what stands in a file.
+
+    Raises:
+        InputError: it is no URDF, or not that of meta.json.
+    """
+    try:
+        urdf = content.decode()
+        if not urdf.lstrip("\ufeff \t\r\n").startswith("<"):  # a name or a path would be loaded in its place
+            raise InputError("is no URDF")
+        return robot_of(urdf, meta)
+    except (RttrrError, UnicodeDecodeError) as error:
+        raise InputError(f"{path}: {error}; fetch or write it again") from error
 
 
 def described(robot: Robot, name: str) -> tuple[str, dict[str, Any]]:

@@ -111,6 +111,13 @@ def read_table(path: Path, names: Sequence[str]) -> tuple[Rows, Array]:
         InputError: it has other columns, a word that is no finite number, or a decimal and a hexadecimal number that
             are not the same.
     """
+    try:
+        return _read(path, names)
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise InputError(f"{path} is no table of UTF-8 text: {error}; write it anew") from None
+
+
+def _read(path: Path, names: Sequence[str]) -> tuple[Rows, Array]:
     expected = [*KEYS, *names, *(HEX + name for name in names)]
     rows: Rows = []
     numbers: list[list[float]] = []

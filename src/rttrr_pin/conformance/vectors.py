@@ -22,10 +22,12 @@ from rttrr_pin.conformance.vector_meta import (
     STATES,
     TRUTH,
     URDF,
+    check_meta,
     described,
     meta_of,
     read_file,
     read_json,
+    read_robot,
     robot_of,
     sha256,
 )
@@ -89,11 +91,9 @@ class Vectors(Summarised):
 
     def summary(self) -> str:
         """One line for the whole, and one for each robot."""
-        numbers = sum(self.widths.values())
+        total = sum(self.widths.values())
         size = f"{self.bytes / 1e6:.1f} MB" if self.bytes >= 1e6 else f"{self.bytes / 1e3:.0f} kB"
-        what = (
-            f"{counted(len(self.meta), 'robot')}, {counted(self.states, 'state')}, {numbers:,} proven numbers, {size}"
-        )
+        what = f"{counted(len(self.meta), 'robot')}, {counted(self.states, 'state')}, {total:,} proven numbers, {size}"
         lines = [f"{self.folder}: {what}"]
         for name, own in self.meta.items():
             levels = ", ".join(level["id"] for level in own["levels"])
@@ -254,13 +254,15 @@ def _read_robot(folder: Path, sum: str | None = None) -> list[ProvenCase]:
     read_file(folder / META, sum)
     try:
         return _cases_of(folder, read_json(folder / META))
-    except (KeyError, TypeError) as error:
-        raise InputError(f"{folder / META} lacks {error}, or has it in another form: fetch or write it again") from None
+    except (KeyError, TypeError, AttributeError) as error:
+        why = f"lacks {error}" if isinstance(error, KeyError) else f"is of another form than it must ({error})"
+        raise InputError(f"{folder / META} {why}: fetch or write it again") from None
 
 
 def _cases_of(folder: Path, meta: dict[str, Any]) -> list[ProvenCase]:
+    check_meta(folder / META, meta)
     content = {name: read_file(folder / name, own) for name, own in meta["sha256"].items()}
-    robot = robot_of(content[URDF].decode(), meta)
+    robot = read_robot(folder / URDF, content[URDF], meta)
     model = robot.model
     payload = [own["link"] for own in meta["payload"]]
     names = truth_columns(model)
@@ -275,7 +277,7 @@ def _cases_of(folder: Path, meta: dict[str, Any]) -> list[ProvenCase]:
         row, column = np.argwhere(lower > upper)[0]
         raise InputError(
             f"{folder / TRUTH}: {names[column]} of state {rows[row][1]} of level {rows[row][0]} lies between "
-            f"{lower[row, column]!r} and {upper[row, column]!r}: expected lower <= upper; write it anew"
+            f"{lower[row, column]} and {upper[row, column]}: expected lower <= upper; write it anew"
         )
     found = []
     for level in meta["levels"]:

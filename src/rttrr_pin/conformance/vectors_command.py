@@ -21,6 +21,7 @@ from rttrr_pin.reporting.options import (
     xacro,
 )
 from rttrr_pin.reporting.output import AGREE, Output, progress, write_json
+from rttrr_pin.reporting.results import counted
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.options import RunOptions
 
@@ -71,7 +72,11 @@ def vectors(
     from rttrr_pin.conformance.vectors import read_vectors, write_vectors
 
     console = Output(quiet=quiet or json == "-", soft_wrap=True)
-    if (output is None) == (check is None):
+    if check is not None and (output is not None or robots):
+        raise InputError(
+            f"--check reads {check} and writes nothing: leave out {'-o' if output is not None else robots[0]}, or --check"
+        )
+    if output is None and check is None:
         raise InputError(f"name a folder to write to: {shlex.join(['rttrr-pin', 'vectors', *robots, '-o', 'FOLDER'])}")
     if check is not None:
         check_targets({"--json": json}, [check])
@@ -79,7 +84,7 @@ def vectors(
         counts = {case.id: len(case.batch) for case in found}
         numbers = sum(x.lower.size for case in found for _, x in case.enclosures.items())
         write_json(json, lambda: {"schema": 1, "passed": True, "states": counts, "numbers": numbers})
-        total = f"{sum(counts.values()):,} states, {numbers:,} proven numbers"
+        total = f"{counted(sum(counts.values()), 'state')}, {numbers:,} proven numbers"
         console.print(Text(f"{check}: as it was written: {', '.join(counts)}; {total}"))
         return AGREE
     assert output is not None
