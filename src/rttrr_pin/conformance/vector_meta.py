@@ -149,12 +149,13 @@ def robot_of(urdf: str, meta: dict[str, Any]) -> Robot:
     return robot
 
 
-def check_meta(path: Path, meta: dict[str, Any]) -> None:
-    """Refuse what says less of the tables than it must.
+def read_files(folder: Path, meta: dict[str, Any]) -> dict[str, bytes]:
+    """The bytes of each file that meta.json names, which must say of all of them and of all rows what they are.
 
     Raises:
-        InputError: a file has no SHA-256, or the rows of a level do not begin where those of the one before end.
+        InputError: a file has no SHA-256 or another, or rows of a level do not begin where those of the one before end.
     """
+    path = folder / META
     lacking = [name for name in (URDF, STATES, TRUTH) if not isinstance(meta["sha256"].get(name), str)]
     if lacking:
         raise InputError(f"{path} has no SHA-256 of {', '.join(lacking)}: fetch or write it again")
@@ -166,6 +167,7 @@ def check_meta(path: Path, meta: dict[str, Any]) -> None:
                 "again"
             )
         row += level["states"]
+    return {name: read_file(folder / name, own) for name, own in meta["sha256"].items()}
 
 
 def read_robot(path: Path, content: bytes, meta: dict[str, Any]) -> Robot:

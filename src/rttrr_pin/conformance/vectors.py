@@ -22,10 +22,10 @@ from rttrr_pin.conformance.vector_meta import (
     STATES,
     TRUTH,
     URDF,
-    check_meta,
     described,
     meta_of,
     read_file,
+    read_files,
     read_json,
     read_robot,
     robot_of,
@@ -260,8 +260,7 @@ def _read_robot(folder: Path, sum: str | None = None) -> list[ProvenCase]:
 
 
 def _cases_of(folder: Path, meta: dict[str, Any]) -> list[ProvenCase]:
-    check_meta(folder / META, meta)
-    content = {name: read_file(folder / name, own) for name, own in meta["sha256"].items()}
+    content = read_files(folder, meta)
     robot = read_robot(folder / URDF, content[URDF], meta)
     model = robot.model
     payload = [own["link"] for own in meta["payload"]]

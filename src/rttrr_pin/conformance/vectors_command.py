@@ -73,9 +73,8 @@ def vectors(
 
     console = Output(quiet=quiet or json == "-", soft_wrap=True)
     if check is not None and (output is not None or robots):
-        raise InputError(
-            f"--check reads {check} and writes nothing: leave out {'-o' if output is not None else robots[0]}, or --check"
-        )
+        other = "-o" if output is not None else robots[0]
+        raise InputError(f"--check reads {check} and writes nothing: leave out {other}, or --check")
     if output is None and check is None:
         raise InputError(f"name a folder to write to: {shlex.join(['rttrr-pin', 'vectors', *robots, '-o', 'FOLDER'])}")
     if check is not None:
