@@ -25,7 +25,7 @@ TOP = Path(__file__).parents[1]
 LIMIT = 20.0
 """Seconds."""
 
-PLUGIN = ("-p", "rttrr_pin.conformance.pytest_plugin")
+PLUGIN = ("-p", "rttrr_pin.conformance.kit.pytest_plugin")
 
 
 def run(*words: str) -> dict[str, Any]:

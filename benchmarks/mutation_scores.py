@@ -17,7 +17,7 @@ from typing import Any
 
 from common import arguments, finish
 from rttrr_pin.conformance import MutationScore, Tolerances, level_robot, mutate
-from rttrr_pin.conformance.mutation import grouped
+from rttrr_pin.conformance.mutation.mutation import grouped
 
 ROBOTS = ("rttrr", "arm6", "floating")
 

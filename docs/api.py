@@ -27,7 +27,7 @@ PACKAGES = (
     "rttrr_pin.diagnosis",
     "rttrr_pin.laws",
     "rttrr_pin.conformance",
-    "rttrr_pin.conformance.strategies",
+    "rttrr_pin.conformance.kit.strategies",
     "rttrr_pin.inspection",
     "rttrr_pin.auditing",
     "rttrr_pin.derivation",

@@ -8,7 +8,7 @@ import my_dynamics
 from hypothesis import given, settings
 
 from rttrr_pin.conformance import assert_inverse_dynamics, level_robots, parametrize_with_checks
-from rttrr_pin.conformance.strategies import robots_in_motion
+from rttrr_pin.conformance.kit.strategies import robots_in_motion
 
 PATH = level_robots()["rttrr"]
 my_id = partial(my_dynamics.inverse_dynamics, my_dynamics.read_chain(PATH))

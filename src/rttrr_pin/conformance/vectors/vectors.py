@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from rttrr_pin.conformance.levels import LEVELS, Case, Level, cases
-from rttrr_pin.conformance.mjcf_file import as_mjcf
-from rttrr_pin.conformance.vector_meta import (
+from rttrr_pin.conformance.vectors.mjcf_file import as_mjcf
+from rttrr_pin.conformance.vectors.vector_meta import (
     FORMAT,
     LICENCE,
     MANIFEST,
@@ -31,7 +31,7 @@ from rttrr_pin.conformance.vector_meta import (
     robot_of,
     sha256,
 )
-from rttrr_pin.conformance.vector_tables import (
+from rttrr_pin.conformance.vectors.vector_tables import (
     LOWER,
     UPPER,
     WIDTHS,
@@ -52,7 +52,7 @@ from rttrr_pin.reporting.results import Summarised, counted
 from rttrr_pin.robot import Robot
 from rttrr_pin.version import __version__
 
-BUNDLED = Path(__file__).with_name("data") / "vectors"
+BUNDLED = Path(__file__).with_name("data")
 """A small part of the bundled set, which comes with the package."""
 
 UNSAFE = re.compile(r"[^A-Za-z0-9_.-]|^\.")

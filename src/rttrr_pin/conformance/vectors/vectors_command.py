@@ -69,7 +69,7 @@ def vectors(
 
     Exit code: 0 written, or as it was written; 2 unusable input, or files that were altered.
     """
-    from rttrr_pin.conformance.vectors import read_vectors, write_vectors
+    from rttrr_pin.conformance.vectors.vectors import read_vectors, write_vectors
 
     console = Output(quiet=quiet or json == "-", soft_wrap=True)
     if check is not None and (output is not None or robots):

@@ -16,7 +16,7 @@ from rttrr_pin.diagnosis.variants.variant import Variant
 from rttrr_pin.errors import InputError, MissingJointError, ShapeError
 from rttrr_pin.implementations import Batch
 
-DATA = Path(__file__).parents[1] / "data" / "torques_differ"
+DATA = Path(__file__).parents[2] / "data" / "torques_differ"
 
 Array = np.ndarray
 

@@ -6,8 +6,8 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 
-from rttrr_pin.conformance.assertions import of_levels, reason
 from rttrr_pin.conformance.judging import PRECISIONS, Wanted, judge
+from rttrr_pin.conformance.kit.assertions import of_levels, reason
 from rttrr_pin.conformance.levels import LEVELS, cases
 from rttrr_pin.core.arguments import choice, whole_number
 from rttrr_pin.errors import ImplementationError, ModelMismatchError, RefusalError, UnknownNameError

@@ -11,7 +11,7 @@ from hypothesis import Phase, find, given, settings
 from hypothesis import strategies as st
 
 from rttrr_pin import Robot, load
-from rttrr_pin.conformance.strategies import TYPES, State, robots, robots_in_motion, states
+from rttrr_pin.conformance.kit.strategies import TYPES, State, robots, robots_in_motion, states
 from rttrr_pin.core.joints import FIXED
 from rttrr_pin.diagnosis.variants.mutations import mutation
 from rttrr_pin.diagnosis.variants.variant import Variant

@@ -14,14 +14,14 @@ import pytest
 import rttrr_pin
 from rttrr_pin import InputError, Robot
 from rttrr_pin.conformance import ProvenCase, Vectors, cases, level_robot, level_robots, read_vectors, write_vectors
-from rttrr_pin.conformance.mjcf_file import as_mjcf
-from rttrr_pin.conformance.vector_meta import sha256
-from rttrr_pin.conformance.vectors import BUNDLED
+from rttrr_pin.conformance.vectors.mjcf_file import as_mjcf
+from rttrr_pin.conformance.vectors.vector_meta import sha256
+from rttrr_pin.conformance.vectors.vectors import BUNDLED
 from rttrr_pin.errors import UnknownNameError
 from rttrr_pin.exact import Enclosures, enclose
 from support.trees import random_tree
 
-RESULTS = Path(__file__).parents[2] / "benchmarks" / "results"
+RESULTS = Path(__file__).parents[3] / "benchmarks" / "results"
 
 OTHER_SCHEMA = '{"format": "rttrr-pin vectors", "schema": 2}'
 
@@ -215,7 +215,7 @@ def test_without_words_for_a_robot_there_is_no_mjcf(written: Vectors, copy: Path
 
 
 # The part of the bundled set that comes with the package: written by
-# rttrr-pin vectors -n 1 -o src/rttrr_pin/conformance/data/vectors, with --level for each of those below.
+# rttrr-pin vectors -n 1 -o src/rttrr_pin/conformance/vectors/data, with --level for each of those below.
 
 
 @pytest.fixture(scope="module")

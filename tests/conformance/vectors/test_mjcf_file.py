@@ -11,7 +11,7 @@ import pytest
 import rttrr_pin
 from rttrr_pin import Batch
 from rttrr_pin.conformance import cases, level_robot, level_robots
-from rttrr_pin.conformance.mjcf_file import as_mjcf, differences
+from rttrr_pin.conformance.vectors.mjcf_file import as_mjcf, differences
 from support.trees import random_tree
 
 AXIS = '<axis xyz="0 0 1"/>'

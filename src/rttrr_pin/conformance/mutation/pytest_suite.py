@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from rttrr_pin.conformance.mutants import Mutants
+from rttrr_pin.conformance.mutation.mutants import Mutants
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.errors import ImplementationError, InputError, listed
 
@@ -97,10 +97,10 @@ class PytestSuite:
 
     def _run(self, job: Path, done: Path, printed: Path) -> None:
         """Run pytest to its end."""
-        module = "rttrr_pin.conformance.suite_run"
+        module = "rttrr_pin.conformance.mutation.suite_run"
         words = [sys.executable, "-m", "pytest", "-p", module, "--rttrr-mutation-job", str(job), *self.arguments]
         words += ["-p", "no:cacheprovider", *(["-n0"] if _has_xdist() else [])]
-        paths = [str(Path(__file__).parents[2]), *filter(None, [os.environ.get("PYTHONPATH")])]  # of this very package
+        paths = [str(Path(__file__).parents[3]), *filter(None, [os.environ.get("PYTHONPATH")])]  # of this very package
         environment = os.environ | {"PYTHONPATH": os.pathsep.join(paths)}
         with printed.open("wb") as out:
             child = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=out, stderr=out, env=environment)

@@ -9,17 +9,18 @@ from pathlib import Path
 
 import pytest
 
-import rttrr_pin.conformance.checks
+import rttrr_pin.conformance.kit.checks
 import rttrr_pin.diagnosis.report
 import rttrr_pin.diagnosis.run
 import rttrr_pin.implementations.pinocchio  # noqa: F401 - what is loaded before stays when a run of pytester ends
 from rttrr_pin import load
-from rttrr_pin.conformance import cases, pytest_plugin
-from rttrr_pin.conformance.checks import SUBJECTS
+from rttrr_pin.conformance import cases
+from rttrr_pin.conformance.kit import pytest_plugin
+from rttrr_pin.conformance.kit.checks import SUBJECTS
 
 pytest_plugins = ["pytester"]
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 NAME = pytest_plugin.__name__
 
 ROBOT = ROOT / "tests/data/torques_differ/two_links.urdf"

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from rttrr_pin.conformance.levels import LEVELS, MOST
-from rttrr_pin.conformance.mutants import Mutants, results
+from rttrr_pin.conformance.mutation.mutants import Mutants, results
 from rttrr_pin.core.arguments import names_of, not_negative, whole_number
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model

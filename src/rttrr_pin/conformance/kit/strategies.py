@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 
-from rttrr_pin.conformance.drawn import AXES, DrawnBody, DrawnJoint, DrawnRobot, text_of
+from rttrr_pin.conformance.kit.drawn import AXES, DrawnBody, DrawnJoint, DrawnRobot, text_of
 from rttrr_pin.core.arguments import choice, whole_number
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.errors import InputError, UnknownNameError

@@ -68,10 +68,10 @@ def mutate(
     """
     options = RunOptions(**run)
     loaded = options.load(json)
-    from rttrr_pin.conformance.mutation import mutate as score
-    from rttrr_pin.conformance.mutation_report import show_score
-    from rttrr_pin.conformance.pytest_suite import PytestSuite
-    from rttrr_pin.conformance.suites import Tolerances
+    from rttrr_pin.conformance.mutation.mutation import mutate as score
+    from rttrr_pin.conformance.mutation.mutation_report import show_score
+    from rttrr_pin.conformance.mutation.pytest_suite import PytestSuite
+    from rttrr_pin.conformance.mutation.suites import Tolerances
 
     if pytest is None and function is not None:
         raise InputError("--function goes with --pytest ARGUMENTS: name the tests that call it")

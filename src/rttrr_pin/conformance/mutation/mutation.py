@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, Protocol
 
-from rttrr_pin.conformance.mutants import SIZE, Mutant, Mutants, mutants
-from rttrr_pin.conformance.suites import Tolerances
+from rttrr_pin.conformance.mutation.mutants import SIZE, Mutant, Mutants, mutants
+from rttrr_pin.conformance.mutation.suites import Tolerances
 from rttrr_pin.core.arguments import whole_number
 from rttrr_pin.errors import InputError
 from rttrr_pin.reporting.results import Summarised, finite

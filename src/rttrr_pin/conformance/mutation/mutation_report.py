@@ -8,8 +8,8 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from rttrr_pin.conformance.mutants import Mutant
-from rttrr_pin.conformance.mutation import MutationScore, grouped
+from rttrr_pin.conformance.mutation.mutants import Mutant
+from rttrr_pin.conformance.mutation.mutation import MutationScore, grouped
 from rttrr_pin.diagnosis.report import values_of
 from rttrr_pin.errors import listed
 

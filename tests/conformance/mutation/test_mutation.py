@@ -13,15 +13,15 @@ import pytest
 from rttrr_pin import Robot, load
 from rttrr_pin.cli import main
 from rttrr_pin.conformance import MutationScore, PytestSuite, Tolerances, level_robots, mutate
-from rttrr_pin.conformance.mutants import Mutants, mutants, results
-from rttrr_pin.conformance.mutate_command import KINDS as OFFERED
-from rttrr_pin.conformance.suites import KINDS
+from rttrr_pin.conformance.mutation.mutants import Mutants, mutants, results
+from rttrr_pin.conformance.mutation.mutate_command import KINDS as OFFERED
+from rttrr_pin.conformance.mutation.suites import KINDS
 from rttrr_pin.diagnosis.run import hypotheses_of
 from rttrr_pin.diagnosis.states import sample_states
 from rttrr_pin.errors import ImplementationError, InputError, RttrrError
 from rttrr_pin.implementations import default_allowance
 
-DATA = Path(__file__).parents[1] / "data" / "torques_differ"
+DATA = Path(__file__).parents[2] / "data" / "torques_differ"
 
 
 @pytest.fixture(scope="module")

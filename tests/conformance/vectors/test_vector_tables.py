@@ -13,11 +13,11 @@ import pytest
 
 import rttrr_pin
 from rttrr_pin.conformance import write_vectors
-from rttrr_pin.conformance.vector_tables import steps, widths
-from rttrr_pin.conformance.vectors import BUNDLED
+from rttrr_pin.conformance.vectors.vector_tables import steps, widths
+from rttrr_pin.conformance.vectors.vectors import BUNDLED
 from support.trees import random_tree
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 READERS = ROOT / "examples" / "vectors"
 
 

@@ -1,6 +1,6 @@
 """The plugin for pytest, which loads nothing of this package until a test asks for checks.
 
-It is registered by the name of this module, so that `-p rttrr_pin.conformance.pytest_plugin` loads it no second time.
+It is registered by the name of this module, so that `-p rttrr_pin.conformance.kit.pytest_plugin` loads it once.
 PYTEST_DONT_REWRITE: it has no assertions, and a run of pytest in a process that has loaded it would warn.
 """
 
@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import pytest
 
 if TYPE_CHECKING:
-    from rttrr_pin.conformance.checks import Options
+    from rttrr_pin.conformance.kit.checks import Options
     from rttrr_pin.robot import Robot
 
 MARKER = "rttrr_checks"
@@ -90,7 +90,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 def _parametrize(
     metafunc: pytest.Metafunc, robots: Any = None, expected_failures: Mapping[str, str] | None = None
 ) -> None:
-    from rttrr_pin.conformance.checks import checks
+    from rttrr_pin.conformance.kit.checks import checks
     from rttrr_pin.errors import RttrrError
 
     if "check" not in metafunc.fixturenames:
@@ -123,7 +123,7 @@ def _loaded(robots: Any) -> list[Robot] | None:
 
 def options_of(config: pytest.Config) -> Options:
     """What the command line says."""
-    from rttrr_pin.conformance.checks import Options
+    from rttrr_pin.conformance.kit.checks import Options
 
     def listed(name: str) -> tuple[str, ...] | None:
         text = config.getoption(name)

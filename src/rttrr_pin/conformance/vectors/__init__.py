@@ -1,0 +1,1 @@
+"""Vectors: states and proven true values as files."""
