@@ -204,5 +204,12 @@ import {NAME}
 print(sorted(name for name in set(sys.modules) - before))
 """
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    own = {"rttrr_pin", "rttrr_pin.lazy", "rttrr_pin.version", "rttrr_pin.conformance", NAME}
+    own = {
+        "rttrr_pin",
+        "rttrr_pin.lazy",
+        "rttrr_pin.version",
+        "rttrr_pin.conformance",
+        "rttrr_pin.conformance.kit",
+        NAME,
+    }
     assert set(eval(done.stdout)) <= own
