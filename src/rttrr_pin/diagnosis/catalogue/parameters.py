@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -11,7 +12,14 @@ import numpy as np
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joints import FIXED
 from rttrr_pin.core.model import Link, Model
-from rttrr_pin.diagnosis.catalogue.altering import differs, inertial_parameters, line_of, spread, with_links
+from rttrr_pin.diagnosis.catalogue.altering import (
+    differs,
+    each_and_all,
+    inertial_parameters,
+    line_of,
+    spread,
+    with_links,
+)
 from rttrr_pin.diagnosis.catalogue.fitted_links import fitted
 from rttrr_pin.diagnosis.catalogue.link_slips import LINK_SLIPS, LinkSlip, Slipped
 from rttrr_pin.diagnosis.catalogue.neighbours import neighbours
@@ -25,7 +33,7 @@ KINDS = slice(0, 1), slice(1, 4), slice(4, 10)
 
 def parameters(model: Model) -> list[Hypothesis]:
     """All hypotheses on the inertial parameters of a robot; those that change no number of it are left out."""
-    return [*_slips(model), *neighbours(model), *fitted(model)]
+    return [*_slips(model), *_defaults(model), *neighbours(model), *fitted(model)]
 
 
 def _slips(model: Model) -> Iterator[Hypothesis]:
@@ -50,6 +58,30 @@ def _slips(model: Model) -> Iterator[Hypothesis]:
     fixed = [i for i in massive if model.joints[i].type is FIXED]
     if len(fixed) > 1:
         yield _fixed_ignored(model, {i: -own[i] for i in fixed})
+
+
+def _defaults(model: Model) -> Iterator[Hypothesis]:
+    """Links that have no inertia, and get that of a body by default, as in DART: each, and all of them."""
+    empty = [i for i, link in enumerate(model.links) if not inertial_parameters(link).any()]
+    for some in each_and_all(empty):
+        links = {i: replace(model.links[i], mass=1.0, inertia=np.eye(3)) for i in some}
+        name = model.links[some[0]].name if len(some) == 1 else None
+        told = f"{name}, which has no inertia," if name else "every link that has no inertia"
+        yield Hypothesis(
+            id="default inertia" if name else "default inertia at every link",
+            kind="parameters",
+            sentence=f"{told} counts with 1 kg and a tensor of 1 kg m^2 about each axis",
+            repair=f"let {name or 'links without inertia'} have no mass; some programs need an <inertial> of zeros",
+            apply=partial(_apply_links, links=links),
+            link=name,
+            parameters=spread(model, {i: inertial_parameters(link) for i, link in links.items()}),
+            values=lambda x: {"mass": 1.0, "mass in the file": 0.0},
+            line=line_of(model, link=name),
+        )
+
+
+def _apply_links(variant: Variant, x: Sequence[float], links: Mapping[int, Link]) -> Variant:
+    return with_links(variant, links)
 
 
 def _inertial_frame(model: Model, link: Link) -> Array:
