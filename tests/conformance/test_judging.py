@@ -113,6 +113,36 @@ def test_a_function_of_single_precision_is_judged_as_wanted() -> None:
     assert not conform(single, **asked, precision="float64").passed
 
 
+def test_few_numbers_of_a_float32_function_are_no_more_than_that() -> None:
+    def single(q: Any, v: Any, a: Any) -> Any:
+        return ARM.robot.inverse_dynamics(q, v, a).tau.astype(np.float32)
+
+    result = conform(single, [ARM.robot], ["gravity"], n_states=1)
+    assert result.passed and result.precision == "float32"
+
+
+def test_nobody_sets_the_bar_for_his_own_numbers() -> None:
+    """Neither by an allowance nor by a type of three digits: what is claimed is rounding of float64 or float32."""
+
+    class Generous:
+        name, version, quantities = "generous", "1", ("tau",)
+
+        def __init__(self, model: Model) -> None:
+            self.nv = model.nv
+
+        def evaluate(self, batch: Batch) -> Evaluation:
+            rows = np.zeros((len(batch), self.nv))
+            return Evaluation({"tau": rows}, {"tau": rows + 1e9})
+
+    def half(q: Any, v: Any, a: Any) -> Any:
+        return ARM.robot.inverse_dynamics(q, v, a).tau.astype(np.float16)
+
+    asked: dict[str, Any] = {"robots": [ARM.robot], "levels": ["rates"], "n_states": 4, "diagnose": False}
+    assert not conform(Generous, **asked).passed
+    assert not conform(half, **asked).passed and not conform(half, **asked).notes
+    assert judge(ARM, make_implementation(half, ARM.robot.model)).outcome == "fail"
+
+
 DOUBLES = np.random.default_rng(0).normal(size=40)
 SINGLES = DOUBLES.astype(np.float32)
 

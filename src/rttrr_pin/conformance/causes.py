@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
-from rttrr_pin.conformance.judging import allowed
+from rttrr_pin.conformance.judging import allowed, answered
 from rttrr_pin.conformance.levels import Case
 from rttrr_pin.conformance.results import LevelResult
 from rttrr_pin.diagnosis.report import told
@@ -35,7 +35,7 @@ class InPrecision:
 
     def evaluate(self, batch: Batch) -> Evaluation:
         """The program's numbers."""
-        return allowed(batch, self.program.evaluate(batch), self.precision)
+        return allowed(batch, answered(self.program, batch), self.precision)
 
 
 def with_causes(

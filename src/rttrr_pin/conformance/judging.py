@@ -20,6 +20,7 @@ from rttrr_pin.errors import ImplementationError, RefusalError, RttrrError
 from rttrr_pin.exact.enclosures import Enclosures, enclose
 from rttrr_pin.implementations import Batch, Evaluation, Implementation, default_allowance
 from rttrr_pin.implementations.allowance import DOUBLE, SINGLE, Precision
+from rttrr_pin.implementations.function import Function
 from rttrr_pin.implementations.protocol import evaluated
 from rttrr_pin.validation.comparison import check_bounds, off_the_truth, true_parameters
 
@@ -36,9 +37,9 @@ what takes more than 16 bits, or eight digits where it was printed. Every number
 def judge(case: Case, subject: Implementation, precision: Wanted = "auto") -> LevelResult:
     """Ask a program one case, and compare what it gives with enclosures of the true values.
 
-    Every number must lie within what rounding can explain: the program's own allowance where it has one, else that of a
-    program of which nothing is known (docs/tolerance.md). The truth is that of the robot's file, as any program reads
-    it.
+    Every number must lie within what rounding can explain: that of a program of which nothing is known, or for
+    programs of this package their running bounds (docs/tolerance.md). What a program of yours allows itself counts
+    for nothing. The truth is that of the robot's file, as any program reads it.
 
     Args:
         case: what is asked (`cases`).
@@ -62,13 +63,26 @@ def judge(case: Case, subject: Implementation, precision: Wanted = "auto") -> Le
 def ask(case: Case, subject: Implementation) -> Evaluation | LevelResult:
     """What a program says of a case; an outcome where it says nothing."""
     try:
-        with np.errstate(over="ignore", invalid="ignore"):
-            evaluation = evaluated(subject, case.batch)
+        evaluation = answered(subject, case.batch)
         if not evaluation.values:
             raise ImplementationError(f"{subject.name} gives none of tau, F, N, f, n: name some in its quantities")
     except RttrrError as error:
         return without_numbers(case, error)
     return evaluation
+
+
+def answered(subject: Implementation, batch: Batch) -> Evaluation:
+    """What a program says of states, without what it allows itself: nobody sets the bar for his own numbers.
+
+    Of this package's own it stays: running bounds of a recursion, digits of what is printed, float32 of a function.
+    """
+    with np.errstate(over="ignore", invalid="ignore"):
+        evaluation = evaluated(subject, batch)
+    if isinstance(subject, Function):
+        ours = subject.type in (np.float64, np.float32)
+    else:
+        ours = type(subject).__module__.startswith(Function.__module__.rpartition(".")[0])
+    return evaluation if ours else replace(evaluation, allowance=None)
 
 
 def without_numbers(case: Case, error: RttrrError) -> LevelResult:

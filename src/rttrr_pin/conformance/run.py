@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import count
 from typing import TYPE_CHECKING
 
@@ -16,6 +16,7 @@ from rttrr_pin.conformance.results import Conformance, LevelResult
 from rttrr_pin.core.arguments import choice
 from rttrr_pin.errors import ImplementationError, InputError, RttrrError, shortened
 from rttrr_pin.implementations import Evaluation, Implementation, label, make_implementation
+from rttrr_pin.implementations.allowance import SINGLE
 from rttrr_pin.implementations.function import Function, name_of
 from rttrr_pin.implementations.program import Program
 from rttrr_pin.implementations.registry import Source, for_one_robot, is_table
@@ -23,6 +24,7 @@ from rttrr_pin.robot import Robot
 from rttrr_pin.validation.run import versions
 
 if TYPE_CHECKING:
+    from rttrr_pin.core.arrays import Array
     from rttrr_pin.implementations.allowance import Precision
 
 Progress = Callable[[int], None]
@@ -72,7 +74,7 @@ def conform(
     answers = _answers(asked, programs)
     numbers = [own.values for own in answers if isinstance(own, Evaluation)]
     _check_offered(asked, programs, answers)
-    own = PRECISIONS[precision] if precision != "auto" else precision_of(numbers)
+    own = _precision(precision, list(programs.values()), numbers)
     results = []
     for case, answer in zip(asked, answers, strict=True):
         results.append(_judged(case, programs[id(case.robot)], answer, own))
@@ -135,7 +137,7 @@ def _programs(subject: Source, asked: Sequence[Case], precision: Wanted) -> dict
                 program = make_implementation(subject, case.robot.model)
                 if isinstance(program, Program):
                     program.rest()
-                if isinstance(program, Function) and precision != "auto":
+                if isinstance(program, Function) and (precision != "auto" or program.type != np.float32):
                     program.type, program.notes = np.dtype(np.float64), ()  # judged as is wanted, whatever it returns
                 made[id(case.robot)] = program
             except RttrrError as error:
@@ -156,6 +158,16 @@ def _answers(asked: Sequence[Case], programs: dict[int, Implementation | RttrrEr
         if isinstance(program, Program):
             program.rest()
     return [found[k] for k in range(len(asked))]
+
+
+def _precision(
+    wanted: Wanted, programs: Sequence[Implementation | RttrrError], numbers: Sequence[Mapping[str, Array]]
+) -> Precision:
+    """That which is wanted; else that of a function's arrays, or what the numbers look like."""
+    if wanted != "auto":
+        return PRECISIONS[wanted]
+    types = [one.type for one in programs if isinstance(one, Function)]
+    return SINGLE if types and all(own == np.float32 for own in types) else precision_of(numbers)
 
 
 def _answer(case: Case, program: Implementation | RttrrError) -> Answer:
