@@ -12,6 +12,7 @@ from rttrr_pin.conformance import Case, cases, conform, judge, level_robot
 from rttrr_pin.conformance.judging import precision_of
 from rttrr_pin.conformance.results import BINS
 from rttrr_pin.core.arrays import norm
+from rttrr_pin.core.model import Model
 from rttrr_pin.implementations import Batch, Evaluation, default_allowance, make_implementation
 from rttrr_pin.implementations.allowance import SINGLE
 from support.implementations import Altered

@@ -290,10 +290,14 @@ def test_a_suite_that_says_nothing_is_refused(
 
 
 def test_what_pytest_says_is_told(suite: Path, robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
-    with pytest.raises(ImplementationError, match="my_missing_module"):
+    with pytest.raises(
+        ImplementationError, match="cannot be imported there: ModuleNotFoundError: No module named .my_missing_module"
+    ):
         run(suite, robot, ["test_at_rest"], monkeypatch, function="my_missing_module:f")
     with pytest.raises(InputError, match="expected a module and a name"):
         PytestSuite("tests", function="my_function")
+    with pytest.raises(InputError, match="No closing quotation; expected words"):
+        PytestSuite('tests -k "rates')
 
 
 @pytest.mark.slow

@@ -58,7 +58,13 @@ class PytestSuite:
         Raises:
             InputError: it cannot be used.
         """
-        words = shlex.split(self.arguments) if isinstance(self.arguments, str) else list(self.arguments)
+        try:
+            words = shlex.split(self.arguments) if isinstance(self.arguments, str) else list(self.arguments)
+        except ValueError as error:
+            raise InputError(
+                f"the arguments of pytest are {self.arguments!r}: {error}; expected words as a shell splits them",
+                options={"the arguments of pytest are": "--pytest is"},
+            ) from None
         object.__setattr__(self, "arguments", tuple(map(os.fspath, words)))
         object.__setattr__(self, "quantities", tuple(key for key in QUANTITIES if key in self.quantities))
         if self.function is not None and ":" not in self.function:
@@ -123,6 +129,11 @@ def _has_xdist() -> bool:
 def _outcomes(done: Path, printed: Path, count: int, suite: PytestSuite) -> list[bool]:
     """What was written of each mutant, behind a line about the run with right dynamics."""
     lines: list[dict[str, Any]] = [json.loads(line) for line in done.read_text().splitlines()]
+    if lines and "unknown" in lines[0]:
+        raise ImplementationError(
+            f"{suite.sentence}: function {suite.function} cannot be imported there: {lines[0]['unknown']}; expected "
+            "my_module:my_function, as the tests import it"
+        )
     if lines and lines[0].get("calls") == 0:
         what = f"fixture {suite.fixture!r}" if suite.function is None else f"function {suite.function}"
         raise ImplementationError(

@@ -22,6 +22,7 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 from rttrr_pin.diagnosis.run import hypotheses_of
 from rttrr_pin.diagnosis.variants.variant import Variant
+from rttrr_pin.errors import told
 from rttrr_pin.implementations import Batch
 
 LEAST, TIMES = 10.0, 10.0
@@ -75,7 +76,11 @@ class Run:
         if session.testsfailed or session.config.option.collectonly:
             return None  # pytest says why nothing was collected
         if self.job["function"] is not None:
-            self._replace(self.job["function"])
+            try:
+                self._replace(self.job["function"])
+            except (Exception, SystemExit) as error:  # the user's own module is imported
+                self._write({"unknown": told(error)})
+                return True
         start = time.monotonic()
         failed, items = [], []
         for item in session.items:
