@@ -105,7 +105,7 @@ def conversions() -> Lines:
             rows[entry["name"]] = (
                 entry["name"],
                 ", ".join(f"{package} {version}" for package, version in entry["versions"].items()),
-                entry["conventions"],
+                entry["conventions"].replace("<inertial>", "`<inertial>`"),
             )
     return table(["", "versions", "what the adapter converts"], rows.values())
 
@@ -141,7 +141,7 @@ def failures() -> Lines:
     return lines[:-1]
 
 
-ONE_KILOGRAM = "a link without <inertial> gets 1 kg and a unit tensor: with these in the file all numbers agree"
+ONE_KILOGRAM = "a link without `<inertial>` gets 1 kg and a unit tensor: with these in the file all numbers agree"
 
 OF_CENTRES = (
     "with all centres of mass at the origins of their links, accelerations agree to rounding, and rates to 2e-10, "
@@ -161,9 +161,10 @@ BY_HAND = {
     (
         "PyBullet",
         "gravity-arm6",
-    ): "with an <inertial> of the root that has no rpy all torques at rest agree: gravity is "
-    "taken in the axes of the root's <inertial>",
-    ("PyBullet", "prismatic-rttrr"): "a link without <inertial> gets 1 kg: its torques are those of DART here",
+    ): "with an `<inertial>` of the root that has no rpy all torques at rest agree: gravity is "
+    "taken in the axes of the root's `<inertial>`",
+    ("PyBullet", "prismatic-rttrr"): "a link without `<inertial>` gets 1 kg: on `rttrr` its torques are those of DART",
+    ("Robotics Toolbox", "gravity-arm6"): "with all joint axes along z all torques of arm6 agree",
     ("ManipulaPy", "rates-arm6"): OF_CENTRES,
     ("ManipulaPy", "prismatic-rttrr"): OF_CENTRES,
 }
@@ -176,7 +177,8 @@ def _failure(entry: Entry, cause: str, those: list[dict[str, Any]]) -> Lines:
     levels = ", ".join(own["id"] for own in those)
     beyond, count = sum(own["beyond"] for own in those), sum(own["count"] for own in those)
     symbol, unit = one["quantity"], one["unit"]
-    hand = next((f" By hand: {BY_HAND[key]}." for own in those if (key := (entry["name"], own["id"])) in BY_HAND), "")
+    notes = dict.fromkeys(BY_HAND[key] for own in those if (key := (entry["name"], own["id"])) in BY_HAND)
+    hand = f" By hand: {'; '.join(notes)}." if notes else ""
     return [
         f"**{cause}** ({levels}; {beyond:,} of {count:,} numbers beyond rounding).{hand} In {one['id']}, {symbol} of "
         f"`{one['at']}` is {_vector(one['given'])} {unit}; the true value lies in {_between(one)} {unit}:",

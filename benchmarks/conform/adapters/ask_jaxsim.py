@@ -66,9 +66,10 @@ def sdf_of(robot: Robot) -> str:
     carriers = {joint.child: joint for joint in robot.joints if joint.type != "floating"}
     for link in urdf.findall("link"):
         name = link.get("name", "")
-        out, inertial = ET.SubElement(model, "link", name=name), link.find("inertial")
+        inertial = link.find("inertial")
         if inertial is None and name != robot.root and all(joint.parent != name for joint in robot.joints):
             continue  # a frame
+        out = ET.SubElement(model, "link", name=name)
         mass, entries = (None, None) if inertial is None else (inertial.find("mass"), inertial.find("inertia"))
         if name in carriers:
             ET.SubElement(out, "pose", relative_to=carriers[name].name).text = "0 0 0 0 0 0"
