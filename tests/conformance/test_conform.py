@@ -81,7 +81,9 @@ def test_a_function_is_made_for_one_robot() -> None:
     standing = result.standing
     assert result.passed and standing.not_offered == ("payload",)
     assert set(standing.passed) == {"gravity", "rates", "accelerations", "fast", "cancelling"}
-    assert result.claim().startswith("arm6: level 3 of 14 (accelerations); also passed: fast, cancelling; not offered")
+    assert result.claim().startswith(
+        "arm6: level 3 of 14 (accelerations), tau alone; also passed: fast, cancelling; not offered"
+    )
 
 
 def whole(model: Model) -> Callable[..., Any]:
@@ -147,7 +149,7 @@ def test_what_is_printed_to_few_digits_is_claimed_at_these(tmp_path: Path) -> No
     command = f"{shlex.join([sys.executable, str(tmp_path / 'my_id.py')])} {{urdf}} {{base}} {{gravity}} {{effects}}"
     result = conform(command, levels=["gravity"], n_states=2)
     assert result.passed and result.printed is not None and result.printed < 10
-    assert result.claim().endswith(f" at {result.printed} digits")
+    assert result.claim().startswith(f"level 1 of 14 (gravity) at {result.printed} digits, tau alone; not asked: ")
 
 
 def test_what_cannot_be_asked_is_an_error() -> None:

@@ -113,6 +113,8 @@ def test_colours_of_a_badge(failing: Conformance) -> None:
     assert json.loads(badge(whole, "b.json"))["message"] == "14 of 14" and colour(whole) == GREEN
     single = replace(whole, precision="float32")
     assert single.claim() == "14 of 14 in float32"
+    some = replace(single, printed=1, results=single.results[:2])
+    assert some.claim(4) == "level 2 of 14 (rates) in float32 at 1 digit; not asked: 12 levels"
     assert colour(replace(whole, results=whole.results[:13])) == YELLOW
     assert colour(failing) == RED
 

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 from typing import Any, Literal
 
 from rttrr_pin.conformance.levels import LEVELS
-from rttrr_pin.reporting.results import Summarised, finite
+from rttrr_pin.reporting.results import Summarised, counted, finite
 
 BINS = (0.0, *(2.0**k for k in range(11)))
 """Upper ends of the bins of the histograms, in eps: 0, 1, 2, 4, ..., 1024; the last bin is all beyond."""
@@ -255,11 +255,14 @@ class Conformance(Summarised):
         return tuple(dict.fromkeys(own.robot for own in self.results))
 
     def claim(self, most: int = len(LEVELS)) -> str:
-        """What was shown, and no more: `Standing.sentence`, on robots of the user's by name, and how precisely."""
+        """What was shown, and no more: `Standing.sentence`, on robots of the user's by name, how precisely, of what."""
         robots = f"{', '.join(self.robots)}: " if self.own_robots else ""
         single = " in float32" if self.precision == "float32" else ""
-        printed = "" if self.printed is None else f" at {self.printed} digits"
-        return f"{robots}{self.standing.sentence(most)}{single}{printed}"
+        printed = "" if self.printed is None else f" at {counted(self.printed, 'digit')}"
+        given = {part.quantity for own in self.results for part in own.quantities}
+        alone = ", tau alone" if given == {"tau"} and self.standing.passed else ""
+        head, mark, rest = self.standing.sentence(most).partition("; ")
+        return f"{robots}{head}{single}{printed}{alone}{mark}{rest}"
 
     def summary(self) -> str:
         """How far the program gets; then a line for each case that was not passed."""

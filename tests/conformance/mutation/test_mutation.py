@@ -167,8 +167,17 @@ def test_the_command_tells_what_passes(robot: Robot, tmp_path: Path, capsys: pyt
     assert json.loads(target.read_text())["passed"] is False
     assert main(["mutate", name, "-n", "50", "--atol", "rounding", "-q"]) == 0
     assert main(["mutate", name, "--states", "gravity", "--least", "1", "-q"]) == 0
-    for words in (["--states", "nowhere"], ["--atol", "small"], ["--function", "a:b"], ["--mutants", "0"]):
+    for words in (
+        ["--states", "nowhere"],
+        ["--atol", "small"],
+        ["--function", "a:b"],
+        ["--mutants", "0"],
+        ["--least", "200"],
+    ):
         assert main(["mutate", name, *words]) == 2
+    capsys.readouterr()
+    assert main(["mutate", name, "--pytest", "tests", "--atol", "1", "--rates", "2"]) == 2
+    assert "--atol, --rates is of a suite that is told" in capsys.readouterr().err
 
 
 # tests of the user's

@@ -66,6 +66,12 @@ def mutate(
 
     Exit code: 0 all are seen (or --least of them), 1 some pass, 2 unusable input.
     """
+    if not 0.0 <= least <= 100.0:
+        raise InputError(f"--least is {least:g}: expected percent, from 0 to 100")
+    told = {"--states": states != ("random",), "-n": count != 10, "--atol": atol != "1e-6", "--rtol": rtol != 0.0}
+    beside = [name for name, given in (told | {"--rates": rates is not None}).items() if given]
+    if pytest is not None and beside:
+        raise InputError(f"{', '.join(beside)} is of a suite that is told, and --pytest runs one: leave out either")
     options = RunOptions(**run)
     loaded = options.load(json)
     from rttrr_pin.conformance.mutation.mutation import mutate as score
