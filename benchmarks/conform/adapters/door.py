@@ -235,7 +235,7 @@ def refuse(adapter: type[Adapter], robot: Robot) -> None:
         "armature": (any(joint.armature for joint in robot.joints), "armature"),
         "damping": (any(joint.damping for joint in robot.joints), "damping of joints"),
         "friction": (any(joint.friction for joint in robot.joints), "Coulomb friction of joints"),
-        "branches": (len({joint.parent for joint in robot.joints}) < len(robot.joints), "links that carry several others"),
+        "branches": (len({joint.parent for joint in robot.joints}) < len(robot.joints), "links that carry several"),
         "prismatic": (any(joint.type == "prismatic" for joint in robot.joints), "prismatic joints"),
     }
     if missing := [
