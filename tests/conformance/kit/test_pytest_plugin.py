@@ -213,3 +213,10 @@ print(sorted(name for name in set(sys.modules) - before))
         NAME,
     }
     assert set(eval(done.stdout)) <= own
+
+
+def test_none_of_the_levels_leaves_the_laws(run) -> None:  # type: ignore[no-untyped-def]
+    words = ("--rttrr-states", "2", "--rttrr-levels", "none", "--rttrr-laws", "E201", "--rttrr-references", "pinocchio")
+    result = run(CHECKED.replace("FUNCTION", "right"), *words)
+    assert result.ret == 0 and "rttrr-level" not in result.stdout.str()
+    assert sum(result.parseoutcomes().get(key, 0) for key in ("passed", "skipped")) == 2

@@ -107,8 +107,9 @@ class Check:
 
 def checks(robots: Sequence[Robot] | None, options: Options) -> Iterator[Check]:
     """All checks of some robots: levels that apply, laws, references. None: the robots of the levels."""
-    asked = cases(robots, options.levels, 1, options.seed)  # names alone: the states are drawn when a check is run
-    for case in asked:
+    # names alone: the states are drawn when a check is run; where no level is wanted, those of the robots
+    asked = cases(robots, options.levels or None, 1, options.seed)
+    for case in asked if options.levels != () else ():
         yield _level(case.level.id, case.name, case.robot, options)
     names = {id(case.robot): (case.name, case.robot) for case in asked}
     for name, robot in names.values():
