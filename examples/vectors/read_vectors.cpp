@@ -27,11 +27,11 @@ Rows table(const std::string& path, std::vector<std::string>& keys) {  // strtod
 
 double program(const std::vector<double>&, std::size_t) { return 0.0; }  // your own; number k of tau, F, N, f, n
 
-int main(int, char** arguments) {
+int main(int count, char** arguments) {
     std::vector<std::string> keys, same;
-    const std::string folder = arguments[1];
+    const std::string folder = count > 1 ? arguments[1] : ".";
     const Rows states = table(folder + "/states.csv", keys), truths = table(folder + "/truth.csv", same);
-    if (keys != same) return 1;
+    if (keys.empty() || keys != same) return std::fprintf(stderr, "%s has no vectors\n", folder.c_str()), 1;
     double difference = 0, widest = 0, error = 0;
     std::size_t numbers = 0;
     for (std::size_t row = 0; row < states.size(); ++row) {

@@ -11,7 +11,8 @@ from rttrr_pin.conformance.badge import badge as text_of_badge
 from rttrr_pin.conformance.badge import kind_of
 from rttrr_pin.conformance.judging import PRECISIONS
 from rttrr_pin.conformance.junit import junit as text_of_junit
-from rttrr_pin.conformance.levels import LEVELS
+from rttrr_pin.conformance.options import chosen_levels
+from rttrr_pin.conformance.options import levels as levels_option
 from rttrr_pin.conformance.report import show_conformance
 from rttrr_pin.conformance.robots import level_robot, level_robots
 from rttrr_pin.conformance.run import conform as run
@@ -49,9 +50,7 @@ of_own_robots = group(gravity, base, friction, xacro, reading)
     nargs=-1,
     help="Robots to ask it with, as `validate` takes them, or robots of the levels by name; without any, all of those.",
 )
-@click.option(
-    "--levels", multiple=True, metavar="ID", help=f"Only these: {', '.join(level.id for level in LEVELS)}. Repeats."
-)
+@levels_option
 @click.option("--states", "-n", default=32, help="States of each level and robot.")
 @seed_option
 @click.option(
@@ -94,11 +93,9 @@ def conform(
     check_targets(targets, sources)
     own = _robots(subject, robots, how)
     check_targets(targets, sources)
-    chosen = [one for own_levels in levels for one in own_levels.replace(",", " ").split()]
-    if levels and not chosen:
-        raise InputError(f"--levels is {levels[0]!r}: expected the name of a level, such as gravity; without it, all")
+    chosen = chosen_levels(levels)
     with progress(None, quiet, "cases judged and explained") as advance:
-        result = run(subject, own, chosen or None, states, seed, precision, not no_diagnose, advance)
+        result = run(subject, own, chosen, states, seed, precision, not no_diagnose, advance)
     write_json(json, result.to_dict)
     write_text(junit, lambda: text_of_junit(result))
     if html is not None:

@@ -215,7 +215,7 @@ def test_without_words_for_a_robot_there_is_no_mjcf(written: Vectors, copy: Path
 
 
 # The part of the bundled set that comes with the package: written by
-# rttrr-pin vectors -n 1 -o src/rttrr_pin/conformance/vectors/data, with --level for each of those below.
+# rttrr-pin vectors -n 1 -o src/rttrr_pin/conformance/vectors/data, with --levels for each of those below.
 
 
 @pytest.fixture(scope="module")

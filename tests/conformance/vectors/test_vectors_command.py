@@ -12,7 +12,7 @@ from rttrr_pin.cli import main
 
 def test_own_robots_are_written_and_checked(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = tmp_path / "out"
-    assert main(["vectors", "trr", "trtr", "-o", str(folder), "-n", "2", "--level", "rates", "--json", "-"]) == 0
+    assert main(["vectors", "trr", "trtr", "-o", str(folder), "-n", "2", "--levels", "rates", "--json", "-"]) == 0
     data = json.loads(capsys.readouterr().out)
     assert data["passed"]
     assert data["robots"].keys() == {"trr", "trtr"}
@@ -31,8 +31,8 @@ def test_own_robots_are_written_and_checked(tmp_path: Path, capsys: pytest.Captu
         (["-o", "OUT", "--check", "OUT"], "writes nothing: leave out -o"),
         (["trr", "--check", "OUT"], "writes nothing: leave out trr"),
         (["-o", "OUT", "--base", "floating"], "--base goes with a robot"),
-        (["-o", "OUT", "--level", "gravty"], "did you mean gravity"),
-        (["trr", "-o", "OUT", "--level", "sixty"], "no level applies"),
+        (["-o", "OUT", "--levels", "gravty"], "did you mean gravity"),
+        (["trr", "-o", "OUT", "--levels", "sixty"], "no level applies"),
         (["-o", "OUT", "-n", "0"], "-n"),
         (["--check", "OUT"], "cannot be read"),
         (["nothing.urdf", "-o", "OUT"], "nothing.urdf"),
@@ -48,7 +48,7 @@ def test_what_cannot_be_done_is_said(
 
 
 def test_what_is_there_is_left_as_it_was(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    words = ["vectors", "trr", "-o", str(tmp_path), "-n", "1", "--level", "gravity"]
+    words = ["vectors", "trr", "-o", str(tmp_path), "-n", "1", "--levels", "gravity"]
     (tmp_path / "mine").write_text("mine")
     assert main(words) == 2
     assert "--force" in capsys.readouterr().err

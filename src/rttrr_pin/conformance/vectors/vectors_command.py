@@ -8,6 +8,8 @@ import click
 from rich.text import Text
 
 from rttrr_pin.conformance.levels import cases
+from rttrr_pin.conformance.options import chosen_levels
+from rttrr_pin.conformance.options import levels as levels_option
 from rttrr_pin.errors import InputError
 from rttrr_pin.reporting.options import (
     base,
@@ -36,7 +38,7 @@ from rttrr_pin.validation.options import RunOptions
 @click.option("--output", "-o", metavar="FOLDER", help="Where a folder for each robot is written.")
 @click.option("--check", metavar="FOLDER", help="Instead of writing: read vectors, and check every file and number.")
 @click.option("--states", "-n", default=32, help="How many states of each level and robot.")
-@click.option("--level", multiple=True, metavar="ID", help="A level that is wanted; without it all. Repeats.")
+@levels_option
 @flag("--force", help="Overwrite files that are there.")
 @seed
 @gravity
@@ -50,7 +52,7 @@ def vectors(
     output: str | None,
     check: str | None,
     states: int,
-    level: tuple[str, ...],
+    levels: tuple[str, ...],
     force: bool,
     seed: int,
     gravity: str | None,
@@ -79,7 +81,7 @@ def vectors(
         raise InputError(f"name a folder to write to: {shlex.join(['rttrr-pin', 'vectors', *robots, '-o', 'FOLDER'])}")
     if check is not None:
         check_targets({"--json": json}, [check])
-        found = read_vectors(check, list(level) or None)
+        found = read_vectors(check, chosen_levels(levels))
         counts = {case.id: len(case.batch) for case in found}
         numbers = sum(x.lower.size for case in found for _, x in case.enclosures.items())
         write_json(json, lambda: {"schema": 1, "passed": True, "states": counts, "numbers": numbers})
@@ -94,7 +96,7 @@ def vectors(
         raise InputError(f"{words[0]} goes with a robot of your own, and none is named: name one, or leave it out")
     own: list[Robot] | None = [one.load(json) for one in options] or None
     check_targets({"--json": json}, [output])
-    wanted = list(level) or None
+    wanted = chosen_levels(levels)
     total_cases = len(cases(own, wanted, 1, seed))
     with progress(total_cases, quiet, "cases") as advance:
         result = write_vectors(output, own, wanted, states, seed, force, advance)
