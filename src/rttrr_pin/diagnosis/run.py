@@ -23,7 +23,7 @@ from rttrr_pin.diagnosis.catalogue.placements import placements
 from rttrr_pin.diagnosis.engine.counterexample import counterexample
 from rttrr_pin.diagnosis.engine.dependence import dependence
 from rttrr_pin.diagnosis.engine.evidence import Evidence, bits, part_of, places, rms
-from rttrr_pin.diagnosis.engine.fitting import Explanation, growth
+from rttrr_pin.diagnosis.engine.fitting import Explanation
 from rttrr_pin.diagnosis.engine.gathering import between, evidence_of, finite_states, part_of_result
 from rttrr_pin.diagnosis.engine.predictions import applied, predicted
 from rttrr_pin.diagnosis.engine.search import Progress, Search
@@ -250,7 +250,7 @@ def _explained(
         found.left_out += len(rest[OTHERS:])
         values = predicted(applied(base, first.hypotheses, first.numbers), own)
         found.changes += sign * (values - own.expected)
-        found.rounding += own.rounding * growth(values, own.expected)
+        found.rounding += own.rounding_at(values)
     if unexplained:
         found.alone = tuple(
             f"{one.sentence}: {one.program} does nothing else otherwise than the recursion" for one in found.causes

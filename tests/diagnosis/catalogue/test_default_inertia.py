@@ -12,8 +12,9 @@ INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" 
 ARM = rttrr_pin.load("rttrr").model.urdf.replace('<link name="tool" />', '<link name="tool"/>')
 
 
-@pytest.mark.parametrize("frames", [1, 2])
-def test_the_default_of_a_program_is_named(frames: int) -> None:
+@pytest.mark.parametrize(("frames", "wrenches"), [(1, False), (1, True), (2, False)])
+def test_the_default_of_a_program_is_named(frames: int, wrenches: bool) -> None:
+    """Also by forces and moments at that link, which are zero in the reference."""
     second = '<link name="lens"/><joint name="lens_joint" type="fixed"><origin xyz="0.1 0.2 0"/><parent link="link_3"/><child link="lens"/></joint></robot>'
     text = ARM if frames == 1 else ARM.replace("</robot>", second)
     filled = text
@@ -22,8 +23,9 @@ def test_the_default_of_a_program_is_named(frames: int) -> None:
         filled = filled.replace(f'<link name="{name}"/>', f'<link name="{name}">{INERTIAL}</link>')
     other = rttrr_pin.load(filled)
 
-    def program(q: np.ndarray, v: np.ndarray, a: np.ndarray) -> np.ndarray:
-        return np.asarray(other.inverse_dynamics(q, v, a).tau)
+    def program(q: np.ndarray, v: np.ndarray, a: np.ndarray) -> dict[str, np.ndarray]:
+        result = other.inverse_dynamics(q, v, a)
+        return {"tau": result.tau} | ({"f": result.f, "n": result.n} if wrenches else {})
 
     found = diagnose(rttrr_pin.load(text), program, n_states=60)
     assert [cause.hypothesis for cause in found.causes] == [

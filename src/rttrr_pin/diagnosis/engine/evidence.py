@@ -19,6 +19,9 @@ from rttrr_pin.validation.compare import labels, ratio
 MOST_TIMES = 2.0**60
 """More than that a difference is not said to be times rounding."""
 
+FRESH = 2.0**-40
+"""Of a result that the reference has as zero, what rounding can explain: some hundred terms, and what cancels."""
+
 SCREENED = 24
 """States on which hypotheses are tried first: a few hundred equations tell nearly all of them apart."""
 
@@ -53,9 +56,21 @@ class Evidence:
         arrays = (getattr(self, name)[rows] for name in ("values", "expected", "tolerance", "rounding"))
         return Evidence(part_of(self.batch, rows), self.quantities, *arrays)
 
-    def of_tolerance(self, predicted: Array, growth: Array | float = 1.0) -> Array:
-        """|values - predicted| over what rounding explains, where terms are `growth` times as large, (N, numbers)."""
-        return ratio(np.abs(self.values - predicted), self.tolerance + self.rounding * growth)
+    def of_tolerance(self, predicted: Array, rounding: Array | None = None) -> Array:
+        """|values - predicted| over what rounding explains, (N, numbers); `rounding` in place of the recursion's."""
+        own = self.rounding if rounding is None else rounding
+        return ratio(np.abs(self.values - predicted), self.tolerance + own)
+
+    def rounding_at(self, values: Array) -> Array:
+        """What rounding of the recursion can explain where it computes these results in place of those expected.
+
+        It grows as the results do, number by number. Of a result that is zero in every state, as at a link without
+        mass, it says nothing: so it is `FRESH` of what takes its place.
+        """
+        new, old = rms(values), rms(self.expected)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            growth = np.where(old > 0.0, np.maximum(new / old, 1.0), 1.0)
+        return np.where(old > 0.0, self.rounding * growth, np.maximum(self.rounding, FRESH * np.abs(values)))
 
 
 def results(evidence: Evidence) -> int:

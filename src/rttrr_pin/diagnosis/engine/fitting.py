@@ -9,7 +9,7 @@ from itertools import islice, product
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.diagnosis.engine.evidence import Evidence, results, rms
+from rttrr_pin.diagnosis.engine.evidence import Evidence, results
 from rttrr_pin.diagnosis.engine.minimax import minimax
 from rttrr_pin.diagnosis.engine.predictions import applied, jacobian, predicted_all
 from rttrr_pin.diagnosis.variants.hypothesis import Hypothesis
@@ -164,17 +164,10 @@ class Fitting:
         self, hypotheses: tuple[Hypothesis, ...], numbers: Sequence[float], values: Array, evidence: Evidence
     ) -> Explanation:
         """How far a set goes that computes these results."""
-        worst = float(evidence.of_tolerance(values, growth(values, evidence.expected)).max(initial=0.0))
+        worst = float(evidence.of_tolerance(values, evidence.rounding_at(values)).max(initial=0.0))
         if numbers and EQUATIONS * len(numbers) > results(evidence):
             worst = np.inf  # so many numbers explain anything
         with np.errstate(over="ignore", invalid="ignore"):
             sizes = [float(np.linalg.norm(x / self.scale)) for x in (evidence.values - values, evidence.difference)]
         left = sizes[0] / sizes[1] if sizes[1] else 0.0
         return Explanation(hypotheses, tuple(numbers), worst, left if np.isfinite(left) else np.inf)
-
-
-def growth(values: Array, expected: Array) -> Array:
-    """How many times as large as expected results a program's are, number by number, at least 1: so its rounding is."""
-    sizes = [rms(x) for x in (values, expected)]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(sizes[1] > 0.0, np.maximum(sizes[0] / sizes[1], 1.0), 1.0)

@@ -16,7 +16,7 @@ import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.diagnosis.engine.evidence import Evidence, rms, screened, with_worst
-from rttrr_pin.diagnosis.engine.fitting import Explanation, Fitting, growth
+from rttrr_pin.diagnosis.engine.fitting import Explanation, Fitting
 from rttrr_pin.diagnosis.engine.predictions import (
     Change,
     Raw,
@@ -276,9 +276,8 @@ class Search:
         if one.fitted and one.hypothesis.parameters is None:
             return False  # it may not be linear
         rest = self.target - one.change if not one.fitted else rest_of(self.target, one.change)
-        allowed = (self.sample.tolerance + self.sample.rounding) / self.scale
-        larger = np.broadcast_to(growth(self.sample.values, self.sample.expected), allowed.shape)
-        return bool((np.abs(rest) > FAR * larger.ravel() * allowed.ravel()).any())
+        allowed = (self.sample.tolerance + self.sample.rounding_at(self.sample.values)) / self.scale
+        return bool((np.abs(rest) > FAR * allowed.ravel()).any())
 
     def _cheapest(self, found: Sequence[Explanation]) -> list[Explanation]:
         """Explanations that cost as little as the cheapest, those that leave least first."""
