@@ -143,6 +143,7 @@ def test_a_function_takes_no_payload() -> None:
 def test_a_module_of_the_current_folder(
     tmp_path: Any, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    monkeypatch.delitem(sys.modules, "my_dynamics", raising=False)  # of another test
     (tmp_path / "my_dynamics.py").write_text(
         "import numpy as np\ndef my_id(q, v, a): return 0.6 * a + 9.81 * np.sin(q)\n"
     )

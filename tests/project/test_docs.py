@@ -59,6 +59,7 @@ def desk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "other_arm.urdf").write_text(other)
     shutil.copytree(ROOT / "tests/data/torques_differ", tmp_path, dirs_exist_ok=True)
     shutil.copy(ROOT / "examples/my_dynamics.py", tmp_path)
+    monkeypatch.delitem(sys.modules, "my_dynamics", raising=False)  # of another test
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("COLUMNS", "80")
     return tmp_path
