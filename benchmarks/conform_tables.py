@@ -141,8 +141,6 @@ def failures() -> Lines:
     return lines[:-1]
 
 
-ONE_KILOGRAM = "a link without `<inertial>` gets 1 kg and a unit tensor: with these in the file all numbers agree"
-
 OF_CENTRES = (
     "with all centres of mass at the origins of their links, accelerations agree to rounding, and rates to 2e-10, "
     "which is more than rounding"
@@ -155,9 +153,6 @@ BY_HAND = {
     ): "`computeSupportedForceByFrame` adds all moving joints of the rigid body to each of its "
     "frames, whichever link of it they hang on: it is right where the body does not branch. tau, and f and n of moving "
     "joints, pass",
-    ("DART", "prismatic-rttrr"): ONE_KILOGRAM,
-    ("DART", "fixed-fixed"): ONE_KILOGRAM,
-    ("DART", "fast-rttrr"): ONE_KILOGRAM,
     (
         "PyBullet",
         "gravity-arm6",
