@@ -11,13 +11,12 @@ from rttrr_pin import InputError, JointEffects
 from rttrr_pin.conformance import Case, cases, conform, judge, level_robot
 from rttrr_pin.conformance.judging import precision_of
 from rttrr_pin.conformance.results import BINS
-from rttrr_pin.core.arrays import norm
 from rttrr_pin.core.model import Model
 from rttrr_pin.implementations import Batch, Evaluation, default_allowance, make_implementation
 from rttrr_pin.implementations.allowance import SINGLE
 from support.implementations import Altered
 from support.planted_levels import PLANTED
-from support.single import SingleRecursion, SingleSpatial, with_mass
+from support.single import SingleRecursion, SingleSpatial, single_ratios, with_mass
 
 CASES = cases(n_states=4)
 
@@ -38,8 +37,6 @@ def recursion(case: Case, spoil: Any = lambda values, batch: None) -> Altered:
     ],
 )
 def test_right_programs_pass_every_level(name: str) -> None:
-    if name == "mujoco":
-        pytest.importorskip("mujoco")
     result = conform(name, n_states=4)
     assert result.standing.whole and result.passed, result.summary()
     assert result.precision == "float64"
@@ -65,18 +62,6 @@ def test_single_precision_is_found_out_and_passes(program: Any) -> None:
     assert not any(own.digits > 7.3 for own in result.results)
     medians = [part.median for own in result.results for part in own.quantities if not np.isnan(part.median)]
     assert 0.1 < np.median(medians) < 30.0
-
-
-def single_ratios(case: Case, program: Any) -> list[float]:
-    """The largest error / allowance of each quantity, against the recursion in doubles and its bound."""
-    batch = case.batch
-    allowed, (values, bounds) = default_allowance(batch, SINGLE), batch.recursion
-    found = []
-    for key, x in program(case.robot.model).evaluate(batch).values.items():
-        error, bound = x - getattr(values, key), getattr(bounds, key)
-        error, bound = (np.abs(y) if key == "tau" else norm(y) for y in (error, bound))
-        found.append(float((error / (allowed[key] + bound)).max()))
-    return found
 
 
 @pytest.mark.parametrize("n_states", [300, pytest.param(10_000, marks=pytest.mark.slow)])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from dataclasses import replace
 from fractions import Fraction
 from typing import Any
@@ -24,7 +25,7 @@ from rttrr_pin.core.scalars import Arithmetic
 from rttrr_pin.core.wrench import LINK_QUANTITIES
 from rttrr_pin.errors import InputError, NumberError, ShapeError
 from rttrr_pin.exact import Enclosures, bounded_dynamics, enclose
-from rttrr_pin.exact.enclosures import PRECISIONS, STRAIGHT_LINE_FROM, enclosing_doubles
+from rttrr_pin.exact.enclosures import PRECISIONS, enclosing_doubles
 from rttrr_pin.exact.intervals import interval, precision
 from rttrr_pin.exact.parameters import exact_parameters
 from rttrr_pin.implementations import Batch
@@ -34,8 +35,16 @@ from support.serial_chains import EXAMPLES, random_chain
 from support.tolerances import SIXTY_DIGITS
 from support.trees import MUTATED, random_tree
 
-ROWS = (4, STRAIGHT_LINE_FROM)
+ROWS = (4, RECORDED := 32)
 """States for which the recursion runs on balls as it stands, and for which its operations are recorded first."""
+
+
+@pytest.fixture(autouse=True, scope="module")
+def recorded_from_few() -> Iterator[None]:
+    """So many states are enough here."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr("rttrr_pin.exact.enclosures.STRAIGHT_LINE_FROM", RECORDED)
+        yield
 
 
 def certified(robot: Robot, states: Batch, parameters: Any = "doubles") -> Enclosures:
@@ -101,9 +110,9 @@ def test_an_enclosure_is_one_double_or_two_neighbours(name: str) -> None:
 
 
 def test_recorded_or_not_the_enclosures_are_the_same(rttrr: Robot) -> None:
-    states = Sampler(rttrr.model, payload=RandomPayload("tool")).draw(0, STRAIGHT_LINE_FROM)
+    states = Sampler(rttrr.model, payload=RandomPayload("tool")).draw(0, RECORDED)
     many = certified(rttrr, states)
-    for k in range(STRAIGHT_LINE_FROM):
+    for k in range(RECORDED):
         one = slice(k, k + 1)
         loads = [load.block(one) for load in states.loads]
         few = enclose(rttrr.model, states.q[one], states.v[one], states.a[one], loads)

@@ -177,7 +177,7 @@ def test_an_interrupt_ends_the_program(tmp_path: Path, monkeypatch: pytest.Monke
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("rttrr_pin.implementations.program.select.poll", interrupt)
+    monkeypatch.setattr("rttrr_pin.implementations.child_process.select.poll", interrupt)
     with pytest.raises(KeyboardInterrupt):
         one.evaluate(states(1))
     assert not alive(child)

@@ -9,11 +9,12 @@ from functools import cached_property
 import numpy as np
 
 from rttrr_pin.core.model import Model
+from rttrr_pin.diagnosis.catalogue.whole import hypotheses_of
 from rttrr_pin.diagnosis.engine.evidence import Evidence, flat, screened, spread
 from rttrr_pin.diagnosis.engine.fitting import Explanation
 from rttrr_pin.diagnosis.engine.predictions import Raw, applied, predicted, raw_changes
 from rttrr_pin.diagnosis.engine.search import Search
-from rttrr_pin.diagnosis.run import diagnose, hypotheses_of
+from rttrr_pin.diagnosis.run import diagnose
 from rttrr_pin.diagnosis.states import sample_states
 from rttrr_pin.diagnosis.variants.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.variants.variant import Variant

@@ -7,6 +7,8 @@ from typing import Any
 
 import numpy as np
 
+from rttrr_pin.conformance import Case
+from rttrr_pin.core.arrays import norm
 from rttrr_pin.core.batch import split_columns
 from rttrr_pin.core.dynamics import dynamics
 from rttrr_pin.core.joints import CONTINUOUS, FIXED, FLOATING, PRISMATIC, REVOLUTE
@@ -14,7 +16,8 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import payloads_of
 from rttrr_pin.core.scalars import Arithmetic
 from rttrr_pin.core.wrench import QUANTITIES
-from rttrr_pin.implementations import Batch, Evaluation
+from rttrr_pin.implementations import Batch, Evaluation, default_allowance
+from rttrr_pin.implementations.allowance import SINGLE as PRECISION
 
 Array = Any
 
@@ -176,3 +179,15 @@ def with_mass(model: Model, link: int, factor: float) -> Model:
     links: Sequence[Any] = model.links
     own = [replace(x, mass=x.mass * factor) if k == link else x for k, x in enumerate(links)]
     return replace(model, links=tuple(own), document=None)
+
+
+def single_ratios(case: Case, program: Any) -> list[float]:
+    """The largest error / allowance of each quantity, against the recursion in doubles and its bound."""
+    batch = case.batch
+    allowed, (values, bounds) = default_allowance(batch, PRECISION), batch.recursion
+    found = []
+    for key, x in program(case.robot.model).evaluate(batch).values.items():
+        error, bound = x - getattr(values, key), getattr(bounds, key)
+        error, bound = (np.abs(y) if key == "tau" else norm(y) for y in (error, bound))
+        found.append(float((error / (allowed[key] + bound)).max()))
+    return found

@@ -2,20 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 import mujoco_model
-import numpy as np
-from door import TREES, Array, Robot, States, serve
-from jax_batch import JaxAdapter, as_real
+from door import TREES, Robot, serve
+from mujoco_jax import MujocoJaxAdapter
 
 
-class Brax(JaxAdapter):
+class Brax(MujocoJaxAdapter):
     packages = ("brax", "mujoco", "jax")
     offers = TREES | {"floating", "armature"}
     call = "jit(vmap(lambda q, v, a: mass.matrix(sys, state) @ a + dynamics.inverse(sys, state)))"
-    conventions = mujoco_model.CONVENTIONS
 
     def __init__(self, robot: Robot, real: Any) -> None:
         super().__init__(robot, real)
@@ -34,12 +31,6 @@ class Brax(JaxAdapter):
             return mass.matrix(system, state) @ a + dynamics.inverse(system, state)
 
         self.one = one
-
-    def inputs(self, states: States) -> Any:
-        return as_real(mujoco_model.inputs(self.robot, self.names, states), self.real)
-
-    def results(self, raw: Any, states: States) -> Mapping[str, Array]:
-        return {"tau": self.torques(*mujoco_model.base(self.robot, np.asarray(raw), states))}
 
 
 if __name__ == "__main__":

@@ -7,20 +7,18 @@ from collections.abc import Mapping
 from typing import Any, ClassVar
 
 import mujoco_model
-import numpy as np
-from door import TREES, Array, Robot, States, serve
-from jax_batch import JaxAdapter, as_real
+from door import TREES, Robot, serve
+from mujoco_jax import MujocoJaxAdapter
 
 FLAGS = "--xla_cpu_use_fusion_emitters=false"
 """Without it XLA compiles MJX more slowly, to slower code."""
 
 
-class Mjx(JaxAdapter):
+class Mjx(MujocoJaxAdapter):
     packages = ("mujoco-mjx", "mujoco", "jax")
     offers = TREES | {"floating", "armature", "damping"}
     words: ClassVar[Mapping[str, str]] = {"friction": mujoco_model.FRICTION}
     call = "jit(vmap(lambda data: mjx.inverse(model, data).qfrc_inverse))"
-    conventions = mujoco_model.CONVENTIONS
 
     def __init__(self, robot: Robot, real: Any) -> None:
         super().__init__(robot, real)
@@ -35,12 +33,6 @@ class Mjx(JaxAdapter):
             return mjx.inverse(put, blank.replace(qpos=q, qvel=v, qacc=a)).qfrc_inverse
 
         self.one = one
-
-    def inputs(self, states: States) -> Any:
-        return as_real(mujoco_model.inputs(self.robot, self.names, states), self.real)
-
-    def results(self, raw: Any, states: States) -> Mapping[str, Array]:
-        return {"tau": self.torques(*mujoco_model.base(self.robot, np.asarray(raw), states))}
 
 
 if __name__ == "__main__":

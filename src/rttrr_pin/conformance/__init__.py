@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from rttrr_pin.conformance.levels import LEVELS as LEVELS
     from rttrr_pin.conformance.levels import Case as Case
     from rttrr_pin.conformance.levels import Level as Level
+    from rttrr_pin.conformance.levels import ProvenCase as ProvenCase
     from rttrr_pin.conformance.levels import cases as cases
     from rttrr_pin.conformance.mutation.mutants import Mutant as Mutant
     from rttrr_pin.conformance.mutation.mutation import MutationScore as MutationScore
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
     from rttrr_pin.conformance.robots import level_robot as level_robot
     from rttrr_pin.conformance.robots import level_robots as level_robots
     from rttrr_pin.conformance.run import conform as conform
-    from rttrr_pin.conformance.vectors.vector_tables import ProvenCase as ProvenCase
     from rttrr_pin.conformance.vectors.vectors import Vectors as Vectors
     from rttrr_pin.conformance.vectors.vectors import read_vectors as read_vectors
     from rttrr_pin.conformance.vectors.vectors import write_vectors as write_vectors
@@ -37,7 +37,7 @@ __getattr__, __dir__, __all__ = lazy(
     {
         "kit.assertions": ("assert_inverse_dynamics",),
         "judging": ("judge",),
-        "levels": ("LEVELS", "Case", "Level", "cases"),
+        "levels": ("LEVELS", "Case", "Level", "ProvenCase", "cases"),
         "mutation.mutants": ("Mutant",),
         "mutation.mutation": ("MutationScore", "mutate"),
         "kit.pytest_plugin": ("parametrize_with_checks",),
@@ -46,7 +46,6 @@ __getattr__, __dir__, __all__ = lazy(
         "robots": ("level_robot", "level_robots"),
         "run": ("conform",),
         "mutation.suites": ("Tolerances",),
-        "vectors.vector_tables": ("ProvenCase",),
         "vectors.vectors": ("Vectors", "read_vectors", "write_vectors"),
     },
 )

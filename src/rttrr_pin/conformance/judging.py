@@ -10,7 +10,7 @@ from typing import Literal
 
 import numpy as np
 
-from rttrr_pin.conformance.levels import Case
+from rttrr_pin.conformance.levels import Case, ProvenCase
 from rttrr_pin.conformance.results import BINS, LevelResult, QuantityResult, Value
 from rttrr_pin.core.arguments import choice
 from rttrr_pin.core.arrays import Array, norm
@@ -124,8 +124,8 @@ def allowed(batch: Batch, evaluation: Evaluation, precision: Precision) -> Evalu
 
 
 def truth(case: Case) -> Enclosures:
-    """Enclosures of the true values of a case; those of the last cases are kept, by the states themselves."""
-    return _truth(_States(case.batch))
+    """Enclosures of the true values of a case, its own if it has some; those of the last cases are kept."""
+    return case.enclosures if isinstance(case, ProvenCase) else _truth(_States(case.batch))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

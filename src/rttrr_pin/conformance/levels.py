@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,6 +24,9 @@ from rttrr_pin.implementations.protocol import Batch
 from rttrr_pin.robot import Robot
 from rttrr_pin.validation.sampling import Ranges, Sampler
 from rttrr_pin.validation.states import model_of
+
+if TYPE_CHECKING:
+    from rttrr_pin.exact.enclosures import Enclosures
 
 MOST = 10**6
 """States of a level."""
@@ -86,6 +90,17 @@ class Case:
         return f"{self.level.id}-{self.name}"
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class ProvenCase(Case):
+    """A case with the true values of its states.
+
+    Attributes:
+        enclosures: two doubles that each true value lies between.
+    """
+
+    enclosures: Enclosures
+
+
 def cases(
     robots: Sequence[Robot] | None = None, levels: Sequence[str] | None = None, n_states: int = 32, seed: int = 0
 ) -> list[Case]:
@@ -142,13 +157,13 @@ def _drawn(model: Model, count: int, seed: int, payload: RandomPayload | None = 
 def _gravity(model: Model, count: int, seed: int) -> Batch:
     """At rest."""
     drawn = _drawn(model, count, seed)
-    return _single(replace(drawn, v=0.0 * drawn.v, a=0.0 * drawn.a))
+    return _single(replace(drawn, v=np.zeros_like(drawn.v), a=np.zeros_like(drawn.a)))
 
 
 def _rates(model: Model, count: int, seed: int) -> Batch:
     """Without accelerations."""
     drawn = _drawn(model, count, seed)
-    return _single(replace(drawn, a=0.0 * drawn.a))
+    return _single(replace(drawn, a=np.zeros_like(drawn.a)))
 
 
 def _all(model: Model, count: int, seed: int) -> Batch:
@@ -171,7 +186,7 @@ def _cancelling(model: Model, count: int, seed: int) -> Batch:
     """Accelerations at which all terms of each driving force add up to nearly nothing: M a = -h, to seven digits."""
     drawn = _single(_drawn(model, count, seed))
     nv = model.nv
-    h = _tau(model, drawn.q, drawn.v, 0.0 * drawn.a)
+    h = _tau(model, drawn.q, drawn.v, np.zeros_like(drawn.a))
     q = np.repeat(drawn.q, nv, axis=0)
     units = np.tile(np.eye(nv), (count, 1))
     M = _tau(model.with_gravity(np.zeros(3)), q, np.zeros_like(units), units).reshape(count, nv, nv)

@@ -10,16 +10,9 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load, RandomPayload, load_of
 from rttrr_pin.core.wrench import QUANTITIES
-from rttrr_pin.diagnosis.catalogue.conventions import conventions
-from rttrr_pin.diagnosis.catalogue.joint_terms import joint_terms
-from rttrr_pin.diagnosis.catalogue.joints import joints
-from rttrr_pin.diagnosis.catalogue.levers import levers
-from rttrr_pin.diagnosis.catalogue.mechanics import mechanics
-from rttrr_pin.diagnosis.catalogue.parameters import parameters
-from rttrr_pin.diagnosis.catalogue.placements import placements
+from rttrr_pin.diagnosis.catalogue.whole import hypotheses_of
 from rttrr_pin.diagnosis.engine.counterexample import counterexample
 from rttrr_pin.diagnosis.engine.dependence import dependence
 from rttrr_pin.diagnosis.engine.evidence import Evidence, bits, part_of, places, rms
@@ -51,8 +44,6 @@ NUMBER = 10.0
 
 OTHERS = 10
 """Other sets that are told."""
-
-CATALOGUES = (conventions, parameters, placements, joints, mechanics, levers, joint_terms)
 
 
 def diagnose(
@@ -121,11 +112,6 @@ def diagnose_at(
     tried = every if ids is None else [own for own in every if own.id in ids]
     with np.errstate(over="ignore", invalid="ignore"):
         return _diagnosed(programs, batch, "given", progress, begin, tried)
-
-
-def hypotheses_of(model: Model) -> list[Hypothesis]:
-    """The whole catalogue about a robot."""
-    return [own for catalogue in CATALOGUES for own in catalogue(model)]
 
 
 def _states(

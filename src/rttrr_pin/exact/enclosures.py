@@ -25,8 +25,8 @@ from rttrr_pin.exact.parameters import Parameters, exact_parameters
 PRECISIONS = (128, 256, 512, 1024, 2048, 4096)
 """Bits of the intervals, tried in this order. At 64 bits, which take as long, one state in two is not tight."""
 
-STRAIGHT_LINE_FROM = 32
-"""States from which recording the operations costs less time than it saves."""
+STRAIGHT_LINE_FROM = 256
+"""States from which recording the operations costs less time than it saves: of arms of six joints, and small trees."""
 
 RELATIVE_WIDTH, ABSOLUTE_WIDTH, ROUNDING_WIDTH = 2.0**-80, 2.0**-200, 2.0**-147
 """Widths that suffice near zero: relative to the norm of the vector; or else to the largest number of the quantity, and

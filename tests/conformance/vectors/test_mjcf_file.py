@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from pathlib import Path
 
+import mujoco
 import numpy as np
 import pytest
 
@@ -110,7 +111,6 @@ def test_what_mujoco_has_no_words_for_is_told(body: str, words: str) -> None:
 
 @pytest.mark.parametrize("seed", range(6))
 def test_what_is_written_of_any_tree_mujoco_compiles(seed: int) -> None:
-    mujoco = pytest.importorskip("mujoco")
     model = rttrr_pin.load(random_tree(seed, 6, ("revolute", "prismatic", "fixed"), mimics=False)).model
     result = as_mjcf(model)
     assert result.text, result.reason

@@ -32,10 +32,10 @@ def by_numpy(folder: Path) -> str:
 
 
 def tool(*names: str) -> str:
-    """The program that runs a language, where it is installed."""
+    """The program that runs a language."""
     found = next(filter(None, map(shutil.which, names)), None)
     if found is None:
-        pytest.skip(f"{names[0]} is not installed")
+        pytest.fail(f"{names[0]} is not installed")
     return found
 
 
@@ -54,6 +54,7 @@ def test_cpp_reads_the_same(tmp_path: Path) -> None:
     assert run(program, BUNDLED / "arm6").stdout == by_numpy(BUNDLED / "arm6")
 
 
+@pytest.mark.readers
 def test_rust_reads_the_same(tmp_path: Path) -> None:
     program = tmp_path / "reader"
     built = run(tool("rustc"), "-o", program, READERS / "read_vectors.rs", cwd=tmp_path)
@@ -61,10 +62,12 @@ def test_rust_reads_the_same(tmp_path: Path) -> None:
     assert run(program, BUNDLED / "arm6").stdout == by_numpy(BUNDLED / "arm6")
 
 
+@pytest.mark.readers
 def test_julia_reads_the_same() -> None:
     assert run(tool("julia"), READERS / "read_vectors.jl", BUNDLED / "arm6").stdout == by_numpy(BUNDLED / "arm6")
 
 
+@pytest.mark.readers
 def test_octave_reads_the_same() -> None:
     call = f"read_vectors('{BUNDLED / 'mimic'}')"
     assert run(tool("octave-cli", "octave"), "--eval", call, cwd=READERS).stdout == by_numpy(BUNDLED / "mimic")

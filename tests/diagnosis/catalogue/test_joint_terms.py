@@ -13,7 +13,7 @@ from rttrr_pin import Robot
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.diagnosis import diagnose
 from rttrr_pin.diagnosis.catalogue.joint_terms import SLIPS, TERMS, joint_terms, parts_of_tau
-from rttrr_pin.diagnosis.run import hypotheses_of
+from rttrr_pin.diagnosis.catalogue.whole import hypotheses_of
 from rttrr_pin.diagnosis.variants.variant import Variant
 from rttrr_pin.validation.sampling import Sampler
 from support.robots import driven

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+from rttrr_pin.diagnosis.catalogue.whole import hypotheses_of
 from rttrr_pin.diagnosis.engine import predictions
 from rttrr_pin.diagnosis.engine.predictions import parameter_columns
 from rttrr_pin.diagnosis.engine.side_by_side import evaluate_all, run_all
-from rttrr_pin.diagnosis.run import hypotheses_of
 from rttrr_pin.diagnosis.states import sample_states
 from rttrr_pin.diagnosis.variants.variant import Variant
 from support.faults import Bench, bench_robot

@@ -144,7 +144,7 @@ def _state(case: Case, result: LevelResult) -> str:
     """The worst state, to be asked again."""
     assert result.worst is not None
     k, batch = result.worst[1].state, case.batch
-    numbers = ", ".join(f"{name}={(getattr(batch, name)[k] + 0.0).tolist()}" for name in "qva")
+    numbers = ", ".join(f"{name}={getattr(batch, name)[k].tolist()}" for name in "qva")
     loads = "".join(
         f", payload at {batch.model.link_names[own.link]}: f={_row(own.f, k)}, n={_row(own.n, k)}"
         for own in batch.loads

@@ -18,10 +18,10 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import RandomPayload
 from rttrr_pin.core.wrench import QUANTITIES
+from rttrr_pin.diagnosis.catalogue.whole import hypotheses_of
 from rttrr_pin.diagnosis.engine.evidence import flat, places, rms, spread
 from rttrr_pin.diagnosis.engine.side_by_side import evaluate_all
 from rttrr_pin.diagnosis.engine.simultaneous import together
-from rttrr_pin.diagnosis.run import hypotheses_of
 from rttrr_pin.diagnosis.states import sample_states
 from rttrr_pin.diagnosis.variants.hypothesis import Hypothesis
 from rttrr_pin.diagnosis.variants.variant import Values, Variant

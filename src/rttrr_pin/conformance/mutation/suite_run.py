@@ -20,7 +20,7 @@ from _pytest.runner import runtestprotocol  # what plugins that run tests again 
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
-from rttrr_pin.diagnosis.run import hypotheses_of
+from rttrr_pin.diagnosis.catalogue.whole import hypotheses_of
 from rttrr_pin.diagnosis.variants.variant import Variant
 from rttrr_pin.errors import told
 from rttrr_pin.implementations import Batch

@@ -9,8 +9,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from rttrr_pin.conformance.levels import ProvenCase
 from rttrr_pin.conformance.vectors.mjcf_file import Mjcf
-from rttrr_pin.conformance.vectors.vector_tables import ProvenCase, ends_of, widths
+from rttrr_pin.conformance.vectors.vector_tables import ends_of, widths
 from rttrr_pin.core.joint import EFFECTS, Joint, JointEffects
 from rttrr_pin.core.model import Model
 from rttrr_pin.errors import InputError, LoadWarning, RttrrError

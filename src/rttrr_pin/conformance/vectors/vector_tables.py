@@ -6,14 +6,13 @@ import csv
 import io
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rttrr_pin.conformance.levels import Case
+from rttrr_pin.conformance.levels import Case, ProvenCase
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import split_columns
 from rttrr_pin.core.model import Model
@@ -31,17 +30,6 @@ HEX, LOWER, UPPER = "hex_", "lower_", "upper_"
 
 Rows: TypeAlias = list[tuple[str, int]]
 """By row the level and the number of its state."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class ProvenCase(Case):
-    """A case with the true values of its states.
-
-    Attributes:
-        enclosures: two doubles that each true value lies between.
-    """
-
-    enclosures: Enclosures
 
 
 def state_columns(model: Model, payload: Sequence[str]) -> list[str]:

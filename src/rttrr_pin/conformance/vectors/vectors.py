@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from rttrr_pin.conformance.levels import LEVELS, Case, Level, cases
+from rttrr_pin.conformance.levels import LEVELS, Case, Level, ProvenCase, cases
 from rttrr_pin.conformance.vectors.mjcf_file import as_mjcf
 from rttrr_pin.conformance.vectors.vector_meta import (
     FORMAT,
@@ -35,7 +35,6 @@ from rttrr_pin.conformance.vectors.vector_tables import (
     LOWER,
     UPPER,
     WIDTHS,
-    ProvenCase,
     enclosures_of,
     loads_of,
     read_table,
@@ -206,7 +205,6 @@ def _by_robot(asked: Sequence[Case], robots: Sequence[Robot] | None) -> dict[str
 def _proven(case: Case, robot: Robot) -> ProvenCase:
     """A case of the robot that its URDF is, with its true values."""
     batch = replace(case.batch, model=robot.model)
-    batch = replace(batch, **{key: getattr(batch, key) + 0.0 for key in "qva"})
     enclosures = enclose(robot.model, batch.q, batch.v, batch.a, batch.loads, "read")
     return ProvenCase(case.level, case.name, robot, batch, enclosures)
 

@@ -33,7 +33,12 @@ KINDS = slice(0, 1), slice(1, 4), slice(4, 10)
 
 def parameters(model: Model) -> list[Hypothesis]:
     """All hypotheses on the inertial parameters of a robot; those that change no number of it are left out."""
-    return [*_slips(model), *_defaults(model), *neighbours(model), *fitted(model)]
+    return [*known_slips(model), *fitted(model)]
+
+
+def known_slips(model: Model) -> list[Hypothesis]:
+    """Those of them without a number to fit."""
+    return [*_slips(model), *_defaults(model), *neighbours(model)]
 
 
 def _slips(model: Model) -> Iterator[Hypothesis]:

@@ -9,7 +9,7 @@ import numpy as np
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 from rttrr_pin.diagnosis.catalogue.altering import TEN, inertial_parameters
-from rttrr_pin.diagnosis.catalogue.parameters import KINDS, parameters
+from rttrr_pin.diagnosis.catalogue.parameters import KINDS, known_slips
 from rttrr_pin.diagnosis.descriptions.tolerance import PRINTED
 
 NEAR = 4.0
@@ -48,8 +48,8 @@ def _slips(own: Model, other: Model, partner: dict[str, str]) -> Iterator[tuple[
                 unlike[name] = x, y
     if not unlike:
         return
-    for slip in parameters(own):
-        if slip.link in unlike and slip.parameters is not None and not slip.start:
+    for slip in known_slips(own):
+        if slip.link in unlike and slip.parameters is not None:
             x, y = unlike[slip.link]
             changes = slip.parameters.reshape(-1, TEN)
             if np.count_nonzero(changes.any(axis=1)) == 1 and _same(x + changes[index[slip.link]], y):
