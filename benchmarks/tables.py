@@ -420,7 +420,8 @@ def single_precision() -> Lines:
         "Two programs in NumPy's float32, our recursion and Featherstone's in spatial vectors, use at most "
         f"{100 * data['worst']:.0f} % of it in {data['states']:,} states of every level. Faults are seen all the same: "
         f"0.1 % of the mass of any one link is {few:.0f} to {most:.0f} times the bound in F of that "
-        f"link; on sixty joints, at whose ends float32 has lost it, {least:.1f} to {many:.0f} times ({measured(data, 'single_precision')}).",
+        f"link; on sixty joints, at whose ends float32 has lost it, {least:.1f} to {many:.0f} times "
+        f"({measured(data, 'single_precision')}).",
     ]
 
 
