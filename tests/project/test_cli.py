@@ -142,7 +142,7 @@ UNUSABLE = {
     "diagnose-nothing": (["diagnose"], "name a table of results or a --subject, one of the two"),
     "diagnose-both": (["diagnose", "rttrr", "a.csv", "--subject", "kernel"], "one of the two"),
     "diagnose-states": (["diagnose", "--subject", "kernel", "--states", "0"], "--states is 0: expected a whole number"),
-    "diagnose-program": (["diagnose", "--subject", "./my_id"], "a program needs its path, such as ./my_id"),
+    "diagnose-program": (["diagnose", "--subject", "./my_id"], "there is no file ./my_id"),
     "diagnose-folder": (["diagnose", "rttrr", "tests"], "a table is a file .csv, .jsonl or .parquet"),
     "diagnose-reference": (["diagnose", "--subject", "kernel", "--reference", "bullet"], "there are kernel"),
     "diagnose-half-a-letter": (["diagnose", "--subject", "kernel", "--reference", "\ud800"], "there are kernel"),

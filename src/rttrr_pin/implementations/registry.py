@@ -95,6 +95,8 @@ def make_implementation(source: Source, model: Model) -> Implementation:
     if _is_in_module(text):
         return make_implementation(_of_module(text), model)
     hint = "a program needs its path, such as ./my_id, and a table is a file .csv, .jsonl or .parquet"
+    if os.sep in text.partition(" ")[0]:
+        hint = f"there is no file {text.partition(' ')[0]}"
     raise UnknownNameError("implementation", text, names(), hint)
 
 
