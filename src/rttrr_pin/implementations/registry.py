@@ -94,10 +94,15 @@ def make_implementation(source: Source, model: Model) -> Implementation:
         return Program(text, model)
     if _is_in_module(text):
         return make_implementation(_of_module(text), model)
-    hint = "a program needs its path, such as ./my_id, and a table is a file .csv, .jsonl or .parquet"
-    if os.sep in text.partition(" ")[0]:
-        hint = f"there is no file {text.partition(' ')[0]}"
-    raise UnknownNameError("implementation", text, names(), hint)
+    raise UnknownNameError("implementation", text, names(), _hint(text))
+
+
+def _hint(text: str) -> str:
+    """What the user of a name that is none may have meant."""
+    path = text.partition(" ")[0]
+    if os.sep in path:
+        return f"there is no file {path}"
+    return "a program needs its path, such as ./my_id, and a table is a file .csv, .jsonl or .parquet"
 
 
 def for_one_robot(source: Source) -> bool:
