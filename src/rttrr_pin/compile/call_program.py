@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 from rttrr_pin.compile.fields import Field, Widths
+from rttrr_pin.compile.float_type import FLOAT64, FloatType
 from rttrr_pin.compile.program import Program, inputs_of
 
 
@@ -62,6 +63,7 @@ class CallProgram(Widths):
         outputs: the arrays it writes: the columns behind those.
         between: the count of further columns, which hold what is passed on.
         unread: places of inputs that no output depends on.
+        float_type: of all numbers.
     """
 
     steps: tuple[Step, ...]
@@ -70,6 +72,7 @@ class CallProgram(Widths):
     outputs: tuple[Field, ...]
     between: int
     unread: tuple[int, ...]
+    float_type: FloatType = FLOAT64
 
     @property
     def columns(self) -> int:

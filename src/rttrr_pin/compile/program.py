@@ -8,6 +8,7 @@ from functools import cached_property
 
 from rttrr_pin.compile.expression import LEAVES, Graph, Op
 from rttrr_pin.compile.fields import Field, Widths
+from rttrr_pin.compile.float_type import FLOAT64, FloatType
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,12 +46,14 @@ class Program(Widths):
         inputs: the arrays it reads; the graph's inputs are their numbers, one array after the other.
         outputs: the arrays it writes.
         results: for each number of the outputs, one array after the other, the node that computes it.
+        float_type: of all numbers, those of the robot included.
     """
 
     graph: Graph
     inputs: tuple[Field, ...]
     outputs: tuple[Field, ...]
     results: tuple[int, ...]
+    float_type: FloatType = FLOAT64
 
     @cached_property
     def order(self) -> tuple[int, ...]:

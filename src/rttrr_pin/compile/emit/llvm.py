@@ -40,16 +40,16 @@ def _processor() -> tuple[str, str]:
     return name, features
 
 
-def lanes(name: str, features: str) -> int:
-    """How many float64 the processor computes at once."""
+def vector_bits(name: str, features: str) -> int:
+    """How many bits of numbers the processor computes with at once."""
     if "+avx512f" in features.split(","):
-        return 8
+        return 512
     if "+avx2" in features.split(","):
-        return 4
+        return 256
     if features:
-        return 2
+        return 128
     wide = ("avx512", "icelake", "sapphirerapids", "graniterapids", "emeraldrapids", "cascadelake", "znver4", "znver5")
-    return 8 if any(word in name for word in wide) else 4
+    return 512 if any(word in name for word in wide) else 256
 
 
 class LlvmEmitter:
@@ -79,7 +79,8 @@ class LlvmEmitter:
         from rttrr_pin.compile.emit.llvm_module import module  # llvmlite's builder, not needed for what is on disk
 
         machine = self._machine()
-        code: bytes = machine.emit_object(module(program, lanes(self.processor, self.features), machine, OPTIMISATION))
+        lanes = vector_bits(self.processor, self.features) // program.float_type.bits
+        code: bytes = machine.emit_object(module(program, lanes, machine, OPTIMISATION))
         return code
 
     def load(self, code: bytes, inputs: Sequence[Field], outputs: Sequence[Field]) -> LlvmExecutable:

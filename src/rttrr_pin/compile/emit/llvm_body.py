@@ -27,7 +27,7 @@ def body(program: Program, layout: Layout) -> tuple[str, int]:
     arguments = "ptr %in, ptr %out, ptr %between, i64 %m"
     calls = "\n".join(f"  call void @segment_{k}({arguments})" for k in range(len(parts)))
     whole = f"define void @body({arguments}) noinline {{\n{calls}\n  ret void\n}}\n"
-    return "\n".join([*declarations(layout.lanes), *texts, whole, *_fill(program, layout)]), len(passed)
+    return "\n".join([*declarations(layout), *texts, whole, *_fill(program, layout)]), len(passed)
 
 
 def _fill(program: Program, layout: Layout) -> Iterator[str]:
@@ -36,7 +36,7 @@ def _fill(program: Program, layout: Layout) -> Iterator[str]:
     still = [(column, x) for column, x in enumerate(program.results) if graph.op[x] is Op.CONSTANT]
     parts = [still[start : start + SEGMENT] for start in range(0, len(still), SEGMENT)]
     for k, part in enumerate(parts):
-        lines = Lines(layout.lanes)
+        lines = layout.lines()
         for column, x in part:
             value = lines.splat(graph.value[x])
             lines.do(f"store {lines.vector} {value}, ptr {lines.at('%o', column * layout.pitch)}")
@@ -83,7 +83,7 @@ def _passed(program: Program, parts: list[list[int]]) -> dict[int, int]:
 
 def _segment(program: Program, layout: Layout, k: int, part: list[int], passed: dict[int, int]) -> str:
     """One loop."""
-    lines = Lines(layout.lanes)
+    lines = layout.lines()
     writer = VectorCode(program, layout, lines, passed)
     for x in part:
         writer.compute(x)
@@ -100,5 +100,5 @@ def _segment(program: Program, layout: Layout, k: int, part: list[int], passed: 
 
 def _loop(name: str, lines: Lines, last: str) -> str:
     """A function that does the lines for m states; %q, %o and %b are where these have their columns."""
-    lines.text[:0] = [f"  %{at} = getelementptr double, ptr %{base}, i64 %i" for at, base in COLUMNS]
+    lines.text[:0] = [f"  %{at} = getelementptr {lines.float_type.c_name}, ptr %{base}, i64 %i" for at, base in COLUMNS]
     return loop(name, "ptr noalias %in, ptr noalias %out, ptr noalias %between", lines, last)

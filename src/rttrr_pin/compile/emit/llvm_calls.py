@@ -4,7 +4,7 @@
     void body(ptr in, ptr out, ptr between, i64 m)       all calls
 
 A row of the table has the step, then the columns that it reads and those that it writes, as distances from `in` in
-float64: `out` and `between` lie behind `in`. The numbers of all calls stand one behind the other in another table.
+numbers: `out` and `between` lie behind `in`. The numbers of all calls stand one behind the other in another table.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 from rttrr_pin.compile.call_program import CallProgram, Step
-from rttrr_pin.compile.emit.llvm_vectors import Layout, Lines, VectorCode, declarations, loop
+from rttrr_pin.compile.emit.llvm_vectors import Layout, VectorCode, declarations, loop
 from rttrr_pin.compile.expression import LEAVES
 
 END = 2**32 - 1
@@ -28,7 +28,7 @@ FILL = "define void @fill(ptr %out, i64 %m) {\n  ret void\n}\n"
 def calls(call_program: CallProgram, layout: Layout) -> str:
     """The schedule's functions and tables."""
     steps = (_step(step, layout, k) for k, step in enumerate(call_program.steps))
-    return "\n".join([*declarations(layout.lanes), *_tables(call_program, layout), *steps, _body(call_program), FILL])
+    return "\n".join([*declarations(layout), *_tables(call_program, layout), *steps, _body(call_program, layout), FILL])
 
 
 def _tables(call_program: CallProgram, layout: Layout) -> Iterator[str]:
@@ -57,23 +57,23 @@ class _StepCode(VectorCode):
     def read(self, index: int) -> str:
         """The vector of a column, or a number in all lanes."""
         assert self.step is not None
-        lines, v = self.lines, self.lines.vector
+        lines, v, scalar = self.lines, self.lines.vector, self.lines.float_type.c_name
         if index in self.step.columns:
             return lines(f"load {v}, ptr {self.address(self.step.columns.index(index))}, align 8")
-        x = lines(f"load double, ptr {lines.at('%numbers', self.step.numbers.index(index))}")
-        first = lines(f"insertelement {v} poison, double {x}, i32 0")
+        x = lines(f"load {scalar}, ptr {lines.at('%numbers', self.step.numbers.index(index))}")
+        first = lines(f"insertelement {v} poison, {scalar} {x}, i32 0")
         return lines(f"shufflevector {v} {first}, {v} poison, <{lines.lanes} x i32> zeroinitializer")
 
     def address(self, entry: int) -> str:
         """Where the column of an entry of the row has the present states."""
         lines = self.lines
         offset = lines(f"load i32, ptr {lines(f'getelementptr i32, ptr %row, i64 {entry}')}")
-        return lines(f"getelementptr double, ptr %q, i64 {lines(f'zext i32 {offset} to i64')}")
+        return lines(f"getelementptr {lines.float_type.c_name}, ptr %q, i64 {lines(f'zext i32 {offset} to i64')}")
 
 
 def _step(step: Step, layout: Layout, k: int) -> str:
     """One loop over the states; everything is read before anything is written, since columns are used again."""
-    program, lines = step.program, Lines(layout.lanes)
+    program, lines = step.program, layout.lines()
     code = _StepCode(program, layout, lines, step=step)
     for x in program.order:
         if program.graph.op[x] not in LEAVES:
@@ -82,11 +82,11 @@ def _step(step: Step, layout: Layout, k: int) -> str:
     values = [code.get(x) for x in program.results]
     for entry, value in enumerate(values, len(step.columns)):
         lines.do(f"store {lines.vector} {value}, ptr {code.address(entry)}, align 8")
-    lines.text.insert(0, "  %q = getelementptr double, ptr %in, i64 %i")
+    lines.text.insert(0, f"  %q = getelementptr {lines.float_type.c_name}, ptr %in, i64 %i")
     return loop(f"step_{k}", "ptr %in, ptr %row, ptr %numbers", lines, code.label)
 
 
-def _body(call_program: CallProgram) -> str:
+def _body(call_program: CallProgram, layout: Layout) -> str:
     """The loop over the rows of the table."""
     steps = range(len(call_program.steps))
     cases = " ".join(f"i32 {k}, label %case_{k}" for k in steps)
@@ -97,7 +97,7 @@ def _body(call_program: CallProgram) -> str:
   %columns_{k} = getelementptr i32, ptr %row, i64 1
   call void @step_{k}(ptr %in, ptr %columns_{k}, ptr %number, i64 %m)
   %row_{k} = getelementptr i32, ptr %row, i64 {entries}
-  %number_{k} = getelementptr double, ptr %number, i64 {len(step.numbers)}
+  %number_{k} = getelementptr {layout.float_type.c_name}, ptr %number, i64 {len(step.numbers)}
   br label %loop""")
     rows = ", ".join(["[ @rows, %start ]", *(f"[ %row_{k}, %case_{k} ]" for k in steps)])
     numbers = ", ".join(["[ @numbers, %start ]", *(f"[ %number_{k}, %case_{k} ]" for k in steps)])

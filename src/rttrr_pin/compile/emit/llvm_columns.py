@@ -16,6 +16,9 @@ I32 = ir.IntType(32)
 LINE = 64
 """Bytes in a line of the cache."""
 
+SCALAR = {64: F64, 32: F32}
+"""The type of numbers of so many bits."""
+
 
 def number(x: int) -> ir.Constant:
     """An int64."""
@@ -97,68 +100,85 @@ def function(
     return function, Writer(ir.IRBuilder(function.append_basic_block("start")))
 
 
-def pack(module: ir.Module, layout: Layout, ir_type: ir.Type) -> ir.Function:
-    """Gather m states of an array into columns; lanes beyond m repeat the last state."""
-    name = "pack_f64" if ir_type is F64 else "pack_f32"
-    routine, w = function(module, name, ir.VoidType(), [PTR, I64, I64, I64, PTR, I64])
+def pack(module: ir.Module, layout: Layout, bits: int) -> ir.Function:
+    """Gather m states of an array of numbers of so many bits into columns; lanes beyond m repeat the last state."""
+    routine, w = function(module, f"pack_f{bits}", ir.VoidType(), [PTR, I64, I64, I64, PTR, I64])
     source, row, column, count, target, m = routine.args
-    b, W, pitch = w.builder, layout.lanes, number(layout.pitch * 8)
-    if ir_type is F64:
+    b, W, pitch, size = w.builder, layout.lanes, number(layout.pitch * layout.float_type.size), layout.float_type.size
+    same = bits == layout.float_type.bits
+    if same:
         _copy_columns(w, layout, (source, column), (target, pitch), (row, count, m))
     last = b.sub(m, number(1))
     with w.loop(m, W) as i:
         # Beyond the last state the last one is repeated: whole vectors need no code of their own for the rest, and a
         # state that is there raises no NaN that is not its own.
         rows = [w.offset(source, b.mul(w.least(b.add(i, number(k)), last), row)) for k in range(W)]
-        to = w.offset(target, b.shl(i, number(3)))
-        squares = _squares(b, layout, column, count) if ir_type is F64 else number(0)
+        to = w.offset(target, _bytes(b, layout, i))
+        squares = _squares(b, layout, column, count) if same else number(0)
         with w.loop(squares, W) as j:
-            at = b.shl(j, number(3))
-            for k, x in enumerate(_transposed(b, [w.load(_vector(layout), w.offset(x, at), 8) for x in rows])):
-                w.store(x, w.offset(to, b.mul(b.add(j, number(k)), pitch)), 8)
+            at = _bytes(b, layout, j)
+            for k, x in enumerate(_transposed(b, [w.load(_vector(layout), w.offset(x, at), size) for x in rows])):
+                w.store(x, w.offset(to, b.mul(b.add(j, number(k)), pitch)), size)
         with w.loop(count, 1, squares) as j:
             at = b.mul(j, column)
             value: ir.Value = ir.Constant(_vector(layout), ir.Undefined)
             for k, x in enumerate(rows):
-                item = w.load(ir_type, w.offset(x, at), 1)
-                value = b.insert_element(value, item if ir_type is F64 else b.fpext(item, F64), ir.Constant(I32, k))
-            w.store(value, w.offset(to, b.mul(j, pitch)), 8)
+                item = _converted(b, layout, w.load(SCALAR[bits], w.offset(x, at), 1))
+                value = b.insert_element(value, item, ir.Constant(I32, k))
+            w.store(value, w.offset(to, b.mul(j, pitch)), size)
     b.ret_void()
     return routine
 
 
 def unpack(module: ir.Module, layout: Layout) -> ir.Function:
     """Scatter m states from columns into an array."""
-    routine, w = function(module, "unpack_f64", ir.VoidType(), [PTR, I64, I64, I64, PTR, I64])
+    routine, w = function(module, "unpack", ir.VoidType(), [PTR, I64, I64, I64, PTR, I64])
     target, row, column, count, source, m = routine.args
-    b, W, pitch = w.builder, layout.lanes, number(layout.pitch * 8)
+    b, W, pitch, size = w.builder, layout.lanes, number(layout.pitch * layout.float_type.size), layout.float_type.size
     _copy_columns(w, layout, (source, pitch), (target, column), (row, count, m))
     full = b.and_(m, number(-W))  # the array has no room for repeated states: what fills no vector goes one by one
     squares = _squares(b, layout, column, count)
     with w.loop(full, W) as i:
         rows = [w.offset(target, b.mul(b.add(i, number(k)), row)) for k in range(W)]
-        origin = w.offset(source, b.shl(i, number(3)))
+        origin = w.offset(source, _bytes(b, layout, i))
         with w.loop(squares, W) as j:
             columns = [w.offset(origin, b.mul(b.add(j, number(k)), pitch)) for k in range(W)]
-            at = b.shl(j, number(3))
-            for y, x in zip(rows, _transposed(b, [w.load(_vector(layout), x, 8) for x in columns]), strict=True):
-                w.store(x, w.offset(y, at), 8)
+            at = _bytes(b, layout, j)
+            for y, x in zip(rows, _transposed(b, [w.load(_vector(layout), x, size) for x in columns]), strict=True):
+                w.store(x, w.offset(y, at), size)
         with w.loop(count, 1, squares) as j:
             at = b.mul(j, column)
-            value = w.load(_vector(layout), w.offset(origin, b.mul(j, pitch)), 8)
+            value = w.load(_vector(layout), w.offset(origin, b.mul(j, pitch)), size)
             for k, y in enumerate(rows):
                 w.store(b.extract_element(value, ir.Constant(I32, k)), w.offset(y, at), 1)
     with w.loop(m, 1, full) as i:
-        to, origin = w.offset(target, b.mul(i, row)), w.offset(source, b.shl(i, number(3)))
+        to, origin = w.offset(target, b.mul(i, row)), w.offset(source, _bytes(b, layout, i))
         with w.loop(count) as j:
-            w.store(w.load(F64, w.offset(origin, b.mul(j, pitch))), w.offset(to, b.mul(j, column)), 1)
+            w.store(w.load(_scalar(layout), w.offset(origin, b.mul(j, pitch))), w.offset(to, b.mul(j, column)), 1)
     b.ret_void()
     return routine
 
 
+def _scalar(layout: Layout) -> ir.Type:
+    """The type of the numbers in columns."""
+    return SCALAR[layout.float_type.bits]
+
+
 def _vector(layout: Layout) -> ir.Type:
-    """As many float64 as the processor computes at once."""
-    return ir.VectorType(F64, layout.lanes)
+    """As many of them as the processor computes at once."""
+    return ir.VectorType(_scalar(layout), layout.lanes)
+
+
+def _bytes(b: ir.IRBuilder, layout: Layout, count: ir.Value) -> ir.Value:
+    """How many bytes so many of them take."""
+    return b.shl(count, number(layout.float_type.size.bit_length() - 1))
+
+
+def _converted(b: ir.IRBuilder, layout: Layout, x: ir.Value) -> ir.Value:
+    """A number of an array as one of the columns."""
+    if x.type is _scalar(layout):
+        return x
+    return b.fptrunc(x, F32) if x.type is F64 else b.fpext(x, F64)
 
 
 def _copy_columns(
@@ -169,20 +189,21 @@ def _copy_columns(
     sizes: tuple[ir.Value, ir.Value, ir.Value],
 ) -> None:
     """Where the array itself lies in columns, and m fills vectors: copy them, and return from the function."""
-    b, (row, count, m) = w.builder, sizes
+    b, (row, count, m), size = w.builder, sizes, layout.float_type.size
     fills = b.icmp_signed("==", b.and_(m, number(layout.lanes - 1)), number(0))
-    with b.if_then(b.and_(b.icmp_signed("==", row, number(8)), fills)):
+    with b.if_then(b.and_(b.icmp_signed("==", row, number(size)), fills)):
         with w.loop(count) as j:
             x, y = (w.offset(base, b.mul(j, distance)) for base, distance in (source, target))
             with w.loop(m, layout.lanes) as i:
-                at = b.shl(i, number(3))
-                w.store(w.load(_vector(layout), w.offset(x, at), 8), w.offset(y, at), 8)
+                at = _bytes(b, layout, i)
+                w.store(w.load(_vector(layout), w.offset(x, at), size), w.offset(y, at), size)
         b.ret_void()
 
 
 def _squares(b: ir.IRBuilder, layout: Layout, column: ir.Value, count: ir.Value) -> ir.Value:
     """Columns that are moved in squares of LANES by LANES: those that lie side by side in memory."""
-    return b.select(b.icmp_signed("==", column, number(8)), b.and_(count, number(-layout.lanes)), number(0))
+    adjacent = b.icmp_signed("==", column, number(layout.float_type.size))
+    return b.select(adjacent, b.and_(count, number(-layout.lanes)), number(0))
 
 
 def _transposed(b: ir.IRBuilder, rows: list[ir.Value]) -> list[ir.Value]:
@@ -205,15 +226,15 @@ def unsound(module: ir.Module, layout: Layout) -> ir.Function:
     """Whether m states have a number that is not finite: 0 x is 0 but for those, where it is NaN."""
     routine, w = function(module, "unsound", I1, [PTR, I64, I64])
     source, count, m = routine.args
-    b, W = w.builder, layout.lanes
+    b, W, size = w.builder, layout.lanes, layout.float_type.size
     zero = ir.Constant(_vector(layout), [0.0] * W)
-    integers = ir.VectorType(I64, W)
+    integers = ir.VectorType(ir.IntType(layout.float_type.bits), W)
     unsound_lanes = w.memory(integers)
     w.store(ir.Constant(integers, [0] * W), unsound_lanes)
     with w.loop(count) as j:
-        column = w.offset(source, b.mul(j, number(layout.pitch * 8)))
+        column = w.offset(source, b.mul(j, number(layout.pitch * size)))
         with w.loop(m, W) as i:
-            product = b.fmul(w.load(_vector(layout), w.offset(column, b.shl(i, number(3))), 8), zero)
+            product = b.fmul(w.load(_vector(layout), w.offset(column, _bytes(b, layout, i)), size), zero)
             bad = b.sext(b.fcmp_unordered("uno", product, zero), integers)
             w.store(b.or_(w.load(integers, unsound_lanes), bad), unsound_lanes)
     # Looked at once, behind the loops: a branch in each would cost more than the products.

@@ -20,11 +20,10 @@ from llvmlite import ir
 from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.emit import RECORD
 from rttrr_pin.compile.emit.llvm_columns import (
-    F32,
-    F64,
     I64,
     LINE,
     PTR,
+    SCALAR,
     function,
     number,
     pack,
@@ -58,11 +57,12 @@ class _Driver:
 
     def __init__(self, module: ir.Module, program: Program | CallProgram, layout: Layout, between: int) -> None:
         self.program, self.layout, self.between = program, layout, between
+        self.column = layout.pitch * layout.float_type.size  # in bytes
         self.body = ir.Function(module, ir.FunctionType(VOID, [PTR, PTR, PTR, I64]), "body")
         self.fill = ir.Function(module, ir.FunctionType(VOID, [PTR, I64]), "fill")
         self.malloc = ir.Function(module, ir.FunctionType(PTR, [I64]), "malloc")
         self.free = ir.Function(module, ir.FunctionType(VOID, [PTR]), "free")
-        self.pack = {ir_type: pack(module, layout, ir_type) for ir_type in (F64, F32)}
+        self.pack = {bits: pack(module, layout, bits) for bits in SCALAR}
         self.unpack = unpack(module, layout)
         self.unsound = unsound(module, layout)
         self.function, self.w = function(module, "run", I64, [PTR, I64, I64], internal=False)
@@ -93,13 +93,11 @@ class _Driver:
     def _scratch(self, without: ir.Block) -> Iterator[list[ir.Value]]:
         """Memory for columns: of the inputs, the outputs, and what is passed between parts, one behind the other."""
         w, b = self.w, self.w.builder
-        sizes = [
-            width * self.layout.pitch * 8 for width in (self.program.width_in, self.program.width_out, self.between)
-        ]
+        sizes = [width * self.column for width in (self.program.width_in, self.program.width_out, self.between)]
         total = max(sum(sizes), 8)
         allocated = None
         if total <= STACK:
-            base = w.memory(F64, total // 8)
+            base = w.memory(I64, -(-total // 8))
         else:
             allocated = b.call(self.malloc, [number(total + LINE)])
             w.require(b.icmp_unsigned("!=", allocated, ir.Constant(PTR, None)), without)
@@ -116,15 +114,15 @@ class _Driver:
             arguments = [base, row, column, number(field.width), at, m]
             with b.if_else(b.icmp_signed("!=", single, number(0))) as (float32, float64):
                 with float32:
-                    b.call(self.pack[F32], arguments)
+                    b.call(self.pack[32], arguments)
                 with float64:
-                    b.call(self.pack[F64], arguments)
+                    b.call(self.pack[64], arguments)
         padded = self._padded(m)
         # All is read before the first result is written: outputs may lie over inputs of the same block.
         b.call(self.body, [inputs, outputs, between, padded])
         bad = b.call(self.unsound, [outputs, number(program.width_out), padded])
         for first, length in _runs(program.unread):  # NaN there would reach no result, and is an error all the same
-            column = self.w.offset(inputs, first * self.layout.pitch * 8)
+            column = self.w.offset(inputs, first * self.column)
             bad = b.or_(bad, b.call(self.unsound, [column, number(length), padded]))
         for (base, row, column, _), field, at in self._placed(arrays[count:], program.outputs, outputs):
             b.call(self.unpack, [base, row, column, number(field.width), at, m])
@@ -141,7 +139,7 @@ class _Driver:
         """Each array with the address of its columns."""
         before = 0
         for array, field in zip(arrays, fields, strict=True):
-            yield array, field, self.w.offset(base, before * self.layout.pitch * 8)
+            yield array, field, self.w.offset(base, before * self.column)
             before += field.width
 
 

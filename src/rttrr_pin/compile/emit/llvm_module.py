@@ -51,8 +51,8 @@ def module(
 def _layout(program: Program | CallProgram, lanes: int) -> Layout:
     """How blocks of this program lie in memory: as many states as keep its columns in the nearest cache."""
     if isinstance(program, CallProgram):
-        size, width = SECOND_LEVEL, program.columns
+        room, width = SECOND_LEVEL, program.columns
     else:
-        size, width = FIRST_LEVEL, program.width_in + program.width_out
-    block = min(BLOCK, max(lanes, size // (8 * max(width, 1)) // lanes * lanes))
-    return Layout(lanes, block, block + lanes)
+        room, width = FIRST_LEVEL, program.width_in + program.width_out
+    block = min(BLOCK, max(lanes, room // (program.float_type.size * max(width, 1)) // lanes * lanes))
+    return Layout(lanes, block, block + lanes, program.float_type)

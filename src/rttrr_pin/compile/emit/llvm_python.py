@@ -39,7 +39,8 @@ FUNCTIONS: dict[str, ir.FunctionType] = {
 }
 """Functions that compiled code calls."""
 
-NPY_DOUBLE = 12
+TYPE_NUMBER = {"float64": 12, "float32": 11}
+"""NPY_DOUBLE and NPY_FLOAT."""
 
 VIEW = {"data": 0, "object": 8, "ndim": 36, "format": 40, "shape": 48, "strides": 56}
 """Offsets of a Py_buffer on machines of 64 bits."""
@@ -49,8 +50,8 @@ VIEW_SIZE = 80
 READ, WRITE = 0x1C, 0x3D
 """What is asked of an input, PyBUF_RECORDS_RO; of an output, PyBUF_C_CONTIGUOUS | PyBUF_WRITABLE | PyBUF_FORMAT."""
 
-FLOAT64 = int.from_bytes(b"d\0", "little")
-"""The format of native, aligned float64: all else begins with another character, or with one more."""
+FORMAT = {name: int.from_bytes(code, "little") for name, code in (("float64", b"d\0"), ("float32", b"f\0"))}
+"""The format of native, aligned numbers: all else begins with another character, or with one more."""
 
 NULL = ir.Constant(PTR, None)
 
@@ -70,6 +71,11 @@ class _One:
     none: ir.Value
     ndarray: ir.Value
     decline: ir.Block
+
+    @property
+    def size(self) -> int:
+        """Bytes of a number."""
+        return self.layout.float_type.size
 
     def write(self) -> None:
         """Compute a state or a small batch and return the outputs, or release all and return None."""
@@ -93,8 +99,9 @@ class _One:
             arrays.append(self._output(items[field.name], view, reference, field, (batched, m)))
         self._require_apart(arrays, m)
         records = self._zeroed(8 * RECORD * len(arrays))
+        single = [number(1)] * (self.layout.float_type.bits == 32)
         for k, (base, *distances) in enumerate(arrays):
-            for entry, value in enumerate((b.ptrtoint(base, I64), *distances)):
+            for entry, value in enumerate((b.ptrtoint(base, I64), *distances, *single)):
                 w.store(value, w.offset(records, 8 * (RECORD * k + entry)))
         bad = b.call(self.run, [records, number(0), m])
         w.require(b.icmp_signed("==", bad, number(0)), self.decline)
@@ -145,8 +152,9 @@ class _One:
                 sizes = w.offset(sizes, b.mul(b.sub(number(1), batched), number(8)))
                 axes = b.add(b.trunc(batched, I32), ir.Constant(I32, len(field.shape)))
                 zero = ir.Constant(I32, 0)
-                double = ir.Constant(I32, NPY_DOUBLE)
-                new = b.call(self.api["PyArray_New"], [self.ndarray, axes, sizes, double, NULL, NULL, zero, zero, NULL])
+                number_type = ir.Constant(I32, TYPE_NUMBER[self.layout.float_type.name])
+                arguments = [self.ndarray, axes, sizes, number_type, NULL, NULL, zero, zero, NULL]
+                new = b.call(self.api["PyArray_New"], arguments)
                 w.store(new, reference)
                 with b.if_then(b.icmp_unsigned("==", new, NULL), likely=False):
                     b.call(self.api["PyErr_Clear"], [])
@@ -158,10 +166,10 @@ class _One:
                 w.store(item, reference)
                 self._fill(item, view, WRITE)
                 w.store(self._array(view, field, batched, m, output=True)[0], data)
-        return w.load(PTR, data), number(8 * field.width), number(8)
+        return w.load(PTR, data), number(self.size * field.width), number(self.size)
 
     def _fill(self, item: ir.Value, view: ir.Value, flags: int) -> None:
-        """The buffer of an array of float64; of a subclass, masked arrays among them, Python code decides."""
+        """The buffer of an array of such numbers; of a subclass, masked arrays among them, Python code decides."""
         w, b = self.w, self.w.builder
         cls = b.call(self.api["PyObject_Type"], [item])
         b.call(self.api["Py_DecRef"], [cls])
@@ -171,7 +179,8 @@ class _One:
             b.call(self.api["PyErr_Clear"], [])
             b.branch(self.decline)
         form = w.load(ir.IntType(16), w.load(PTR, w.offset(view, VIEW["format"])), 1)
-        w.require(b.icmp_unsigned("==", form, ir.Constant(ir.IntType(16), FLOAT64)), self.decline)
+        wanted = ir.Constant(ir.IntType(16), FORMAT[self.layout.float_type.name])
+        w.require(b.icmp_unsigned("==", form, wanted), self.decline)
 
     def _batch(self, view: ir.Value, field: Field) -> tuple[ir.Value, ir.Value]:
         """Whether the first array has one axis more than a state, 0 or 1, and how many states there are."""
@@ -196,12 +205,12 @@ class _One:
         for axis, length in enumerate(field.shape):
             size = w.load(I64, w.offset(w.offset(shape, first), 8 * axis))
             w.require(b.icmp_signed("==", size, number(length)), self.decline)
-        data, row = w.load(PTR, w.offset(view, VIEW["data"])), number(8 * field.width)
+        data, row = w.load(PTR, w.offset(view, VIEW["data"])), number(self.size * field.width)
         if output:
-            return data, row, number(8)
+            return data, row, number(self.size)
         column = w.load(I64, w.offset(strides, first))
         in_rows = b.and_(
-            b.icmp_signed("==", column, number(8)),
+            b.icmp_signed("==", column, number(self.size)),
             b.icmp_signed("==", b.select(several, w.load(I64, strides), row), row),
         )
         w.require(b.or_(in_rows, b.not_(several)), self.decline)

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 from rttrr_pin.compile.expression import FUSED, Op
+from rttrr_pin.compile.float_type import FLOAT64, FloatType
 from rttrr_pin.compile.program import Program
 from rttrr_pin.compile.sincos import COSINE, LARGEST, PIO2, ROUND, SINE, TWO_OVER_PI
 
@@ -17,7 +18,7 @@ BINARY = {Op.ADD: "fadd", Op.SUB: "fsub", Op.MUL: "fmul"}
 
 
 def literal(x: float) -> str:
-    """A float64 as LLVM writes it: its bits."""
+    """A number as LLVM writes it: the bits of a float64, for shorter types too."""
     return f"0x{struct.unpack('<Q', struct.pack('<d', x))[0]:016X}"
 
 
@@ -26,26 +27,32 @@ class Lines:
     """Lines of one function, with fresh names, for vectors of so many lanes."""
 
     lanes: int
+    float_type: FloatType = FLOAT64
     text: list[str] = field(default_factory=list)
     count: int = 0
 
     @property
     def vector(self) -> str:
-        """The type of a vector of float64."""
-        return f"<{self.lanes} x double>"
+        """The type of a vector of numbers."""
+        return f"<{self.lanes} x {self.float_type.c_name}>"
 
     @property
     def integers(self) -> str:
-        """The type of a vector of int64."""
-        return f"<{self.lanes} x i64>"
+        """The type of a vector of integers, as long as the numbers."""
+        return f"<{self.lanes} x i{self.float_type.bits}>"
+
+    @property
+    def suffix(self) -> str:
+        """What the names of LLVM's functions on such vectors end with."""
+        return f"v{self.lanes}f{self.float_type.bits}"
 
     def splat(self, x: float) -> str:
         """A constant in every lane."""
-        return f"<{', '.join([f'double {literal(x)}'] * self.lanes)}>"
+        return f"<{', '.join([f'{self.float_type.c_name} {literal(x)}'] * self.lanes)}>"
 
     def whole(self, x: int) -> str:
         """An integer in every lane."""
-        return f"<{', '.join([f'i64 {x}'] * self.lanes)}>"
+        return f"<{', '.join([f'i{self.float_type.bits} {x}'] * self.lanes)}>"
 
     def __call__(self, line: str) -> str:
         """One instruction; returns the name of its result."""
@@ -59,25 +66,25 @@ class Lines:
         self.text.append(f"  {line}")
 
     def op(self, what: str, x: str, y: str) -> str:
-        """A binary operation on vectors of float64, exactly as written."""
+        """A binary operation on vectors of numbers, exactly as written."""
         return self(f"{what} {self.vector} {x}, {y}")
 
     def fma(self, x: str, y: str, z: str) -> str:
         """The sum x y + z, rounded once."""
         v = self.vector
-        return self(f"call {v} @llvm.fma.v{self.lanes}f64({v} {x}, {v} {y}, {v} {z})")
+        return self(f"call {v} @llvm.fma.{self.suffix}({v} {x}, {v} {y}, {v} {z})")
 
     def negated(self, x: str) -> str:
         """The opposite."""
         return self(f"fneg {self.vector} {x}")
 
     def bits(self, what: str, x: str, y: str) -> str:
-        """A binary operation on vectors of int64."""
+        """A binary operation on vectors of integers."""
         return self(f"{what} {self.integers} {x}, {y}")
 
     def at(self, base: str, offset: int) -> str:
         """The address of column offset, at the present states."""
-        return self(f"getelementptr double, ptr {base}, i64 {offset}")
+        return self(f"getelementptr {self.float_type.c_name}, ptr {base}, i64 {offset}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,19 +94,26 @@ class Layout:
     Attributes:
         lanes: states computed at once.
         block: states in a block.
-        pitch: the distance of two columns, in float64.
+        pitch: the distance of two columns, in numbers.
+        float_type: of the numbers.
     """
 
     lanes: int
     block: int
     pitch: int
+    float_type: FloatType = FLOAT64
+
+    def lines(self) -> Lines:
+        """For a function on its columns."""
+        return Lines(self.lanes, self.float_type)
 
 
-def declarations(lanes: int) -> Iterator[str]:
+def declarations(layout: Layout) -> Iterator[str]:
     """Of the functions that operations on vectors call."""
-    v = f"<{lanes} x double>"
-    yield f"declare {v} @llvm.fma.v{lanes}f64({v}, {v}, {v})"
-    yield f"declare {v} @llvm.fabs.v{lanes}f64({v})"
+    lines = layout.lines()
+    v = lines.vector
+    yield f"declare {v} @llvm.fma.{lines.suffix}({v}, {v}, {v})"
+    yield f"declare {v} @llvm.fabs.{lines.suffix}({v})"
     yield "declare double @sin(double)"
     yield "declare double @cos(double)"
 
@@ -175,7 +189,7 @@ class VectorCode:
         elif op is Op.SIGN:
             name = self._sign(self.get(args[0]))
         elif op is Op.ABS:
-            name = lines(f"call {lines.vector} @llvm.fabs.v{lines.lanes}f64({lines.vector} {self.get(args[0])})")
+            name = lines(f"call {lines.vector} @llvm.fabs.{lines.suffix}({lines.vector} {self.get(args[0])})")
         else:
             if args[0] not in self.angles:
                 self.angles[args[0]] = self._sincos(self.get(args[0]))
@@ -196,7 +210,7 @@ class VectorCode:
         """Sine and cosine, by the polynomials; angles beyond their range are done over by the C library."""
         lines = self.lines
         s, c = polynomials(lines, q)
-        size = lines(f"call {lines.vector} @llvm.fabs.v{lines.lanes}f64({lines.vector} {q})")
+        size = lines(f"call {lines.vector} @llvm.fabs.{lines.suffix}({lines.vector} {q})")
         beyond = lines(f"fcmp ugt {lines.vector} {size}, {lines.splat(LARGEST)}")  # also NaN
         some = lines(f"bitcast <{lines.lanes} x i1> {beyond} to i{lines.lanes}")
         any_ = lines(f"icmp ne i{lines.lanes} {some}, 0")
