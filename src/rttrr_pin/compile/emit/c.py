@@ -10,20 +10,19 @@ from __future__ import annotations
 import ctypes
 import math
 import os
-import re
 import shlex
 import shutil
 import subprocess
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cache
 from pathlib import Path
-from textwrap import wrap
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rttrr_pin.compile.emit import Array, Task
+from rttrr_pin.compile.emit.c_text import Dialect, comment, function_name, operations
 from rttrr_pin.compile.expression import Op
 from rttrr_pin.compile.fields import Field
 from rttrr_pin.compile.program import Program
@@ -34,6 +33,14 @@ COMPILERS = ("cc", "gcc", "clang")
 
 OPTIONS = ("-std=c99", "-O2", "-ffp-contract=off", "-fPIC", "-shared")
 """Each operation is rounded by itself: with any compiler the same bits, but for the C library's sines."""
+
+
+def number(x: float) -> str:
+    """A float64 in C: the shortest decimal that is read back as the same number."""
+    if math.isfinite(x):
+        return repr(x)
+    return "NAN" if math.isnan(x) else "INFINITY" if x > 0 else "-INFINITY"
+
 
 FORM = {
     Op.ADD: "{0} + {1}",
@@ -47,27 +54,15 @@ FORM = {
 }
 """Each operation in C; the sign of NaN is NaN."""
 
-UNITS = {
-    "q": "rad or m",
-    "v": "rad/s or m/s",
-    "a": "rad/s^2 or m/s^2",
-    "tau": "N m or N",
-    "tau_joint": "N m or N",
-    "nonlinear_effects": "N m or N",
-    "gravity_torque": "N m or N",
-    "F": "N",
-    "N": "N m",
-    "f": "N",
-    "n": "N m",
-    "mass_matrix": "kg m^2, kg m or kg",
-}
-"""Of what goes in and out; the rest is in SI units too."""
+DIALECT = Dialect("double", FORM, number)
 
 NAME = "program"
 """Of the function, where none is asked for."""
 
-WIDTH = 110
-"""Characters in a line of the comment."""
+REMARKS = (
+    "Outputs are written last: they may share memory with inputs. Nothing is allocated, kept or checked; NaN and "
+    "infinity come through. Compile as C99, without -ffast-math."
+)
 
 
 class CEmitter:
@@ -80,7 +75,7 @@ class CEmitter:
 
     def emit(self, program: Program) -> bytes:
         """C source of the function alone."""
-        return _text(program, NAME, []).encode()
+        return _text(program, NAME, ()).encode()
 
     def source(self, program: Program, robot: str, labels: Mapping[str, Sequence[str]]) -> str:
         """C source for readers.
@@ -93,8 +88,8 @@ class CEmitter:
         Returns:
             A file: a comment that says what goes in and out, and the function ROBOT_OUTPUT.
         """
-        name = identifier("_".join((robot, *(field.name for field in program.outputs))))
-        return _text(program, name, [*_comment(program, name, _plain(robot), labels)])
+        name = function_name(program, robot)
+        return _text(program, name, comment(program, robot, labels, _signature(program, name), REMARKS))
 
     def load(self, code: bytes, inputs: Sequence[Field], outputs: Sequence[Field]) -> CExecutable:
         """Compile the source, and a loop over states with it, into this process.
@@ -105,83 +100,14 @@ class CEmitter:
         return CExecutable(_compiled(code.decode() + _loop(inputs, outputs)))
 
 
-def identifier(text: str) -> str:
-    """A name that C takes."""
-    name = re.sub(r"\W", "_", text, flags=re.ASCII)
-    return name if name[:1].isalpha() else f"robot_{name}"
-
-
-def _plain(name: str) -> str:
-    """A name that may stand in a comment."""
-    return re.sub(r"[^\w .,:()+-]", "?", name, flags=re.ASCII)
-
-
-def _text(program: Program, name: str, comment: list[str]) -> str:
-    return "\n".join([*comment, "#include <math.h>", "", f"{_signature(program, name)} {{", *_lines(program), "}", ""])
+def _text(program: Program, name: str, head: Iterable[str]) -> str:
+    body = (f"    {line}" for line in operations(program, DIALECT, lambda field, k: f"{field.name}[{k}]"))
+    return "\n".join([*head, "#include <math.h>", "", f"{_signature(program, name)} {{", *body, "}", ""])
 
 
 def _signature(program: Program, name: str) -> str:
     arguments = [f"const double *{field.name}" for field in program.inputs]
     return f"void {name}({', '.join([*arguments, *(f'double *{field.name}' for field in program.outputs)])})"
-
-
-def _lines(program: Program) -> Iterator[str]:
-    """The function's body: inputs, operations, outputs."""
-    op, args = program.graph.op, program.graph.args
-    entries = [(field.name, k) for field in program.inputs for k in range(field.width)]
-
-    def name(x: int) -> str:
-        if op[x] is Op.CONSTANT:
-            return number(program.graph.value[x])
-        return "{}{}".format(*entries[args[x][0]]) if op[x] is Op.INPUT else f"t{x}"
-
-    for x in program.order:
-        if op[x] is Op.INPUT:
-            yield "    const double {0}{1} = {0}[{1}];".format(*entries[args[x][0]])
-    for x in program.order:
-        if op[x] not in (Op.CONSTANT, Op.INPUT):
-            yield f"    const double t{x} = {FORM[op[x]].format(*(name(y) for y in args[x]))};"
-    results = iter(program.results)
-    for field in program.outputs:
-        for k in range(field.width):
-            yield f"    {field.name}[{k}] = {name(next(results))};"
-
-
-def number(x: float) -> str:
-    """A float64 in C: the shortest decimal that is read back as the same number."""
-    if math.isfinite(x):
-        return repr(x)
-    return "NAN" if math.isnan(x) else "INFINITY" if x > 0 else "-INFINITY"
-
-
-def _comment(program: Program, name: str, robot: str, labels: Mapping[str, Sequence[str]]) -> Iterator[str]:
-    yield f"/* {robot}: {', '.join(field.name for field in program.outputs)} of one state, by rttrr-pin."
-    yield ""
-    yield f"   {_signature(program, name)};"
-    yield ""
-    for field in program.inputs:
-        entries = ", ".join(map(_plain, labels.get(field.name, ())))
-        yield from _wrapped(f"{_declared(field)}: {entries}" if entries else _declared(field), 6)
-    for field in program.outputs:
-        ordered = field.shape == tuple(x.width for x in program.inputs if x.name == "v")
-        yield from _wrapped(f"{_declared(field)}, written{', in the order of v' if ordered else ''}", 6)
-    yield ""
-    yield from _wrapped(f"{program.operations}.")
-    yield from _wrapped(
-        "Outputs are written last: they may share memory with inputs. Nothing is allocated, kept or checked; NaN and "
-        "infinity come through. Compile as C99, without -ffast-math. */"
-    )
-
-
-def _declared(field: Field) -> str:
-    """Name, size and unit of an array."""
-    lengths = " x ".join(map(str, field.shape))
-    rows = f", {lengths} row by row" if len(field.shape) > 1 else ""
-    return f"{field.name}[{field.width}] [{UNITS.get(field.name, 'SI units')}]{rows}"
-
-
-def _wrapped(text: str, indent: int = 3) -> list[str]:
-    return wrap(text, WIDTH, initial_indent="   ", subsequent_indent=" " * indent)
 
 
 def _loop(inputs: Sequence[Field], outputs: Sequence[Field]) -> str:

@@ -8,7 +8,7 @@ from fractions import Fraction
 from textwrap import TextWrapper
 from typing import Any
 
-from rttrr_pin.compile.emit.c import identifier
+from rttrr_pin.compile.emit.c_text import identifier
 from rttrr_pin.derivation import QUANTITIES, Derivation
 from rttrr_pin.derivation.collect import Presenter, Sum
 from rttrr_pin.derivation.motion import angles
