@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
 
-from rttrr_pin.compile.expression import LEAVES, Graph, Op
+from rttrr_pin.compile.expression import FUSED, LEAVES, Graph, Op
 from rttrr_pin.compile.fields import Field, Widths
 from rttrr_pin.compile.float_type import FLOAT64, FloatType
 
@@ -82,7 +82,9 @@ class Program(Widths):
         op, args = self.graph.op, self.graph.args
         ops = [op[x] for x in self.order]
         angles = {args[x][0] for x in self.order if op[x] in (Op.SIN, Op.COS)}
-        return Operations(ops.count(Op.MUL), ops.count(Op.ADD) + ops.count(Op.SUB), ops.count(Op.NEG), len(angles))
+        fused = sum(ops.count(x) for x in FUSED)
+        additions = ops.count(Op.ADD) + ops.count(Op.SUB) + fused
+        return Operations(ops.count(Op.MUL) + fused, additions, ops.count(Op.NEG), len(angles))
 
 
 def inputs_of(graph: Graph, nodes: Iterable[int]) -> tuple[int, ...]:

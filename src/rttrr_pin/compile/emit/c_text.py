@@ -85,7 +85,10 @@ def _name(program: Program, dialect: Dialect, entries: Sequence[tuple[Field, int
     graph = program.graph
     if graph.op[x] is Op.CONSTANT:
         return dialect.number(graph.value[x])
-    return "{0.name}{1}".format(*entries[graph.args[x][0]]) if graph.op[x] is Op.INPUT else f"t{x}"
+    if graph.op[x] is Op.INPUT:
+        field, k = entries[graph.args[x][0]]
+        return f"{field.name}{k}"
+    return f"t{x}"
 
 
 def function_name(program: Program, robot: str) -> str:
@@ -113,7 +116,7 @@ def comment(
     """
     yield f"/* {_plain(robot)}: {', '.join(field.name for field in program.outputs)} of one state, by rttrr-pin."
     yield ""
-    yield f"   {signature};"
+    yield from _wrapped(f"{signature};", 6)
     yield ""
     for field in program.inputs:
         entries = ", ".join(map(_plain, labels.get(field.name, ())))
