@@ -13,11 +13,12 @@ from rttrr_pin import JointEffects, Robot
 from rttrr_pin.compile import QUANTITIES
 from rttrr_pin.compile.build import straight_lines
 from rttrr_pin.compile.emit import cuda_text, emitter
+from rttrr_pin.compile.emit.cuda_driver import NONE
 from rttrr_pin.compile.expression import Graph, Op
 from rttrr_pin.compile.fields import Field, PayloadSlot
 from rttrr_pin.compile.program import Program
 from rttrr_pin.compile.sincos import LARGEST
-from support.cuda_on_cpu import NONE, OnCpu
+from support.cuda_on_cpu import OnCpu
 from support.tolerances import ROUNDING
 from support.trees import random_tree
 
@@ -35,10 +36,6 @@ def tree() -> Robot:
     return robot.with_joint_effects(
         {joint: JointEffects(0.1 * k, 0.2 * k, 0.3 * k) for k, joint in enumerate(robot.joint_names, start=1)}
     )
-
-
-def on_cpu(program: Program, dtype: str = "float64") -> OnCpu:
-    return OnCpu(cuda_text.source(program, dtype), program.inputs, program.outputs, dtype)
 
 
 def drawn(fields: Sequence[Field], states: int = STATES) -> list[np.ndarray]:
@@ -60,7 +57,7 @@ def of_llvm(program: Program, inputs: Sequence[np.ndarray]) -> list[np.ndarray]:
 
 def check_same_bits(program: Program) -> None:
     inputs, outputs = drawn(program.inputs), empty(program)
-    assert on_cpu(program)(STATES, [*inputs, *outputs]) == NONE
+    assert OnCpu(program)(STATES, [*inputs, *outputs]) == NONE
     for found, wanted in zip(outputs, of_llvm(program, inputs), strict=True):
         np.testing.assert_array_equal(found, wanted)
 
@@ -72,7 +69,7 @@ def torques(rttrr: Robot) -> Program:
 
 @pytest.fixture(scope="module")
 def kernel(torques: Program) -> OnCpu:
-    return on_cpu(torques)
+    return OnCpu(torques)
 
 
 @pytest.fixture(scope="module")
@@ -100,10 +97,10 @@ def test_payloads_have_the_bits_of_the_kernel(tree: Robot) -> None:
 
 def test_what_does_not_fit_into_shared_memory_has_the_same_bits(tree: Robot) -> None:
     program = straight_lines(tree.model, ("regressor",), (), fused=True)
-    assert cuda_text.shape(program.inputs, program.outputs, "float64").staged == program.inputs
+    assert cuda_text.shape(program.inputs, program.outputs, program.float_type).staged == program.inputs
     check_same_bits(program)
     wide = Program(*_many_inputs(200))
-    assert cuda_text.shape(wide.inputs, wide.outputs, "float64").staged == wide.outputs
+    assert cuda_text.shape(wide.inputs, wide.outputs, wide.float_type).staged == wide.outputs
     check_same_bits(wide)
 
 
@@ -168,7 +165,7 @@ def test_results_may_lie_over_inputs(kernel: OnCpu, torques: Program, wanted: np
 def test_an_order_of_threads_that_matters_would_show(tree: Robot) -> None:
     """Inputs pass through shared memory and outputs do not: the next block's numbers must wait for the last thread."""
     program = straight_lines(tree.model, ("regressor",), (), fused=True)
-    kernel, inputs = on_cpu(program), drawn(program.inputs)
+    kernel, inputs = OnCpu(program), drawn(program.inputs)
     one, other = empty(program), empty(program)
     kernel(STATES, [*inputs, *one], blocks=1)
     kernel(STATES, [*inputs, *other], blocks=1, backwards=True)
@@ -202,11 +199,11 @@ def test_overflow_and_the_sign_of_infinity_are_reported() -> None:
     )
     for value in (1e200, np.inf, -np.inf, np.nan):
         out = np.zeros((2, 2))
-        assert on_cpu(made)(2, [np.array([[1.0], [value]]), out]) == 1
+        assert OnCpu(made)(2, [np.array([[1.0], [value]]), out]) == 1
         assert out[0].tolist() == [1.0, 1.0]
     infinite = Program(graph, made.inputs, (Field("tau", (1,)),), (graph.constant(-np.inf),))
     out = np.zeros((1, 1))
-    assert on_cpu(infinite)(1, [np.zeros((1, 1)), out]) == 0 and out[0, 0] == -np.inf
+    assert OnCpu(infinite)(1, [np.zeros((1, 1)), out]) == 0 and out[0, 0] == -np.inf
 
 
 # ---- sines
@@ -231,7 +228,7 @@ def test_sines_and_cosines_of_hard_angles() -> None:
         ]
     )[:, None]
     out = np.zeros((len(angles), 2))
-    assert on_cpu(made)(len(angles), [angles, out]) == NONE
+    assert OnCpu(made)(len(angles), [angles, out]) == NONE
     np.testing.assert_array_equal(out, of_llvm(made, [angles])[0])
     with mpmath.workprec(2000):
         for (s, co), (x,) in zip(out, angles, strict=True):

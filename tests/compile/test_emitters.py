@@ -373,7 +373,7 @@ def test_numbers_are_written_to_the_last_bit() -> None:
 
 @pytest.mark.parametrize("other", [name for name in EMITTERS if name != "c"])
 def test_only_c_is_source_for_readers(rttrr: Robot, other: str) -> None:
-    with pytest.raises(InputError, match="take emitter='c'"):
+    with pytest.raises(InputError, match="take emitter='c' or 'cuda'"):
         rttrr.compile().source(other)
 
 

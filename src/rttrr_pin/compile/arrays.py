@@ -23,10 +23,10 @@ def as_rows(x: NDArray[Any], batch: tuple[int, ...], rows: int) -> NDArray[Any]:
     """(N, width) of the same memory where strides can say that, else as it is, (*batch, width)."""
     if x.shape[:-1] != batch:
         x = np.broadcast_to(x, (*batch, x.shape[-1]))
-    return x.reshape(rows, x.shape[-1]) if _even(x.shape[:-1], x.strides[:-1]) else x
+    return x.reshape(rows, x.shape[-1]) if even(x.shape[:-1], x.strides[:-1]) else x
 
 
-def _even(shape: tuple[int, ...], strides: tuple[int, ...]) -> bool:
+def even(shape: tuple[int, ...], strides: tuple[int, ...]) -> bool:
     """Whether axes can be made one: each strides as far as all that is inside it."""
     axes = [(size, stride) for size, stride in zip(shape, strides, strict=True) if size != 1]
     return all(outer == size * inner for (_, outer), (size, inner) in pairwise(axes))

@@ -78,15 +78,19 @@ class Kernel(Generic[Result]):
     @cached_property
     def program(self) -> Program:
         """The straight-line program (without payload), with the count of its operations."""
+        return self._straight_lines(fused=False)
+
+    def _straight_lines(self, fused: bool) -> Program:
         from rttrr_pin.compile.build import straight_lines
 
-        return straight_lines(self.model, self.outputs)
+        return straight_lines(self.model, self.outputs, fused=fused)
 
     def source(self, emitter: str = "c") -> str:
         """The program (without payload) as a source file, to carry the dynamics elsewhere.
 
         Args:
-            emitter: "c", for a C99 file with the function `void ROBOT_OUTPUT(const double *q, ..., double *output)`.
+            emitter: "c", for a C99 file with the function `void ROBOT_OUTPUT(const double *q, ..., double *output)`;
+                "cuda", for CUDA C++ with the kernel `ROBOT_OUTPUT`.
 
         Returns:
             The file's text; a comment on top says what goes in and out.
@@ -95,10 +99,12 @@ class Kernel(Generic[Result]):
             UnknownNameError: there is no such emitter.
             InputError: it writes no source.
         """
-        write = getattr(emit.emitter(emitter), "source", None)
+        how = emit.emitter(emitter)
+        write = getattr(how, "source", None)
         if write is None:
-            raise InputError(f"emitter {emitter!r} writes no source for readers: take emitter='c'")
-        text: str = write(self.program, self.model.name, {name: self._labels(name) for name in self._inputs})
+            raise InputError(f"emitter {emitter!r} writes no source for readers: take emitter='c' or 'cuda'")
+        program = self._straight_lines(fused=True) if how.fuses else self.program
+        text: str = write(program, self.model.name, {name: self._labels(name) for name in self._inputs})
         return text
 
     def _labels(self, name: str) -> tuple[str, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, cast, overload
+from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
 from rttrr_pin.core.arguments import names_of
 from rttrr_pin.core.arrays import Array
@@ -15,8 +15,14 @@ from rttrr_pin.errors import InputError
 
 if TYPE_CHECKING:  # what few robots are asked for is loaded when one is
     from rttrr_pin.compile import Kernel
+    from rttrr_pin.compile.device import DeviceKernel
     from rttrr_pin.exact.enclosures import Enclosures
     from rttrr_pin.exact.parameters import Parameters
+
+OnHost = Literal["llvm", "numpy", "c"]
+"""Emitters whose kernels take arrays of the host."""
+
+Outputs = str | tuple[str, ...] | list[str]
 
 
 class Dynamics:
@@ -27,6 +33,7 @@ class Dynamics:
             raise InputError(f"model is a {type(model).__name__}: pass a Model; load(...) makes robots of files")
         self._model = model
         self._kernels: dict[object, Kernel[Any]] = {}
+        self._device_kernels: dict[object, DeviceKernel] = {}
 
     @property
     def model(self) -> Model:
@@ -113,13 +120,24 @@ class Dynamics:
         return enclose(self.model, q, v, a, loads_of(self.model, payload), parameters)
 
     @overload
-    def compile(self, outputs: str = "tau", emitter: str | None = None) -> Kernel[Array]: ...
+    def compile(self, outputs: Outputs, emitter: Literal["cuda"]) -> DeviceKernel: ...
 
     @overload
-    def compile(self, outputs: tuple[str, ...] | list[str], emitter: str | None = None) -> Kernel[dict[str, Array]]: ...
+    def compile(self, outputs: Outputs = "tau", *, emitter: Literal["cuda"]) -> DeviceKernel: ...
 
-    def compile(self, outputs: str | Sequence[str] = "tau", emitter: str | None = None) -> Kernel[Any]:
-        """Compile the robot's dynamics for this processor.
+    @overload
+    def compile(self, outputs: str = "tau", emitter: OnHost | None = None) -> Kernel[Array]: ...
+
+    @overload
+    def compile(
+        self, outputs: tuple[str, ...] | list[str], emitter: OnHost | None = None
+    ) -> Kernel[dict[str, Array]]: ...
+
+    @overload
+    def compile(self, outputs: Outputs, emitter: str | None) -> Kernel[Any] | DeviceKernel: ...
+
+    def compile(self, outputs: str | Sequence[str] = "tau", emitter: str | None = None) -> Kernel[Any] | DeviceKernel:
+        """Compile the robot's dynamics for this processor, or for a GPU.
 
         Args:
             outputs: what to compute, one name or several: `"tau"`, `"F"`, `"N"`, `"f"`, `"n"`, `"tau_joint"`,
@@ -128,19 +146,29 @@ class Dynamics:
                 origin over angular velocity, in {i}; R_0_i and p_0_i), `"dtau_dq"`, `"dtau_dv"`, `"dtau_da"`; and each
                 of them with `"_bound"` behind, a bound on its rounding. The fewer, the faster.
             emitter: `"llvm"` (machine code), `"numpy"` (wherever NumPy runs) or `"c"` (by the C compiler);
-                None for what is there.
+                None for what is there. `"cuda"` for an NVIDIA GPU, whose kernel takes arrays that lie there.
 
         Returns:
-            A kernel, `kernel(q, v, a, payload=None, out=None, threads=None)`.
+            A kernel, `kernel(q, v, a, payload=None, out=None, threads=None)`; on a GPU a `DeviceKernel`, with `stream`
+            instead of `threads`.
 
         Raises:
             UnknownNameError: there is no such output, or no such emitter.
-            InputError: no output, or one twice; or the emitter cannot be imported.
+            InputError: no output, or one twice; or the emitter cannot be imported, or there is no GPU.
         """
         names = names_of("outputs", outputs)
         if emitter is not None and not isinstance(emitter, str):
             raise InputError(f"emitter is {emitter!r}: pass its name, such as 'llvm', or None")
-        return self._kernel(outputs if isinstance(outputs, str) else names, emitter)
+        wanted = outputs if isinstance(outputs, str) else names
+        return self._device_kernel(wanted) if emitter == "cuda" else self._kernel(wanted, emitter)
+
+    def _device_kernel(self, outputs: str | tuple[str, ...]) -> DeviceKernel:
+        kernel = self._device_kernels.get(outputs)
+        if kernel is None:
+            from rttrr_pin.compile.device import DeviceKernel
+
+            kernel = self._device_kernels[outputs] = DeviceKernel(self.model, outputs)
+        return kernel
 
     def _kernel(self, outputs: str | tuple[str, ...], emitter: str | None = None) -> Kernel[Any]:
         kernel = self._kernels.get((outputs, emitter))

@@ -1,7 +1,7 @@
 """From a program to something that runs: one module for each way, one line for each in the registry.
 
-An emitter turns a program into bytes that may be kept on disk, and such bytes into an executable. A new one (CUDA)
-is one new file and one line here.
+An emitter turns a program into bytes that may be kept on disk, and such bytes into an executable. A new one is one new
+file and one line here.
 """
 
 from __future__ import annotations
@@ -55,15 +55,18 @@ class Emitter(Protocol):
 
     Attributes:
         name: in the registry.
-        identity: everything that its bytes depend on but the program: versions, processor.
         calls: whether it takes schedules as well; else straight lines only, however long.
         fuses: whether it has fused operations; else it is given none.
     """
 
     name: str
-    identity: str
     calls: bool
     fuses: bool
+
+    @property
+    def identity(self) -> str:
+        """Everything that its bytes depend on but the program: versions, processor."""
+        ...
 
     def emit(self, program: Program | CallProgram) -> bytes:
         """Translate a program."""
@@ -103,6 +106,9 @@ def task(run: Callable[[int, int, int], int], executable: object, arrays: Sequen
 EMITTERS = ("llvm", "numpy", "c")
 """By preference; the module of the same name here has a function `emitter()`."""
 
+ON_DEVICES = ("cuda",)
+"""Likewise; what these make takes no arrays of the host, see `rttrr_pin.compile.device`."""
+
 
 def emitter(name: str | None = None) -> Emitter:
     """An emitter by name, or the first one whose compiler is there.
@@ -113,8 +119,8 @@ def emitter(name: str | None = None) -> Emitter:
     """
     if name is None:
         return next(own for own in map(_importable, EMITTERS) if own is not None)
-    if not isinstance(name, str) or name not in EMITTERS:
-        raise UnknownNameError("emitter", name, EMITTERS)
+    if not isinstance(name, str) or name not in (*EMITTERS, *ON_DEVICES):
+        raise UnknownNameError("emitter", name, (*EMITTERS, *ON_DEVICES))
     own = _importable(name)
     if own is None:
         raise InputError(f"emitter {name!r} cannot be imported: pip install rttrr-pin again, or take emitter='numpy'")

@@ -27,11 +27,9 @@ import numpy as np
 from rttrr_pin.compile.emit.c_text import Dialect, comment, function_name, operations
 from rttrr_pin.compile.expression import Op
 from rttrr_pin.compile.fields import Field
+from rttrr_pin.compile.float_type import FloatType
 from rttrr_pin.compile.program import Program
 from rttrr_pin.compile.sincos import COSINE, LARGEST, PIO2, ROUND, SINE, TWO_OVER_PI
-
-SIZES = {"float64": 8, "float32": 4}
-"""Bytes of each type of number."""
 
 SHARED = 48 * 1024
 """Bytes of shared memory that a block has on every card."""
@@ -107,9 +105,9 @@ class Shape:
         return sum(other.width for other in fields[: fields.index(field)])
 
 
-def shape(inputs: Sequence[Field], outputs: Sequence[Field], dtype: str) -> Shape:
+def shape(inputs: Sequence[Field], outputs: Sequence[Field], float_type: FloatType) -> Shape:
     """What fits into shared memory; results lie over the inputs, which have all been read by then."""
-    size = SIZES[dtype]
+    size = float_type.size
     sides = [(side, sum(field.width for field in side) | 1) for side in (inputs, outputs)]  # odd: no bank twice
     fitting = [(side, width) for side, width in sides if width * size * BLOCKS[-1] <= SHARED]
     pitch = max((width for _, width in fitting), default=0)
@@ -117,36 +115,33 @@ def shape(inputs: Sequence[Field], outputs: Sequence[Field], dtype: str) -> Shap
     return Shape(threads, pitch, tuple(field for side, _ in fitting for field in side))
 
 
-def source(
-    program: Program, dtype: str, robot: str | None = None, labels: Mapping[str, Sequence[str]] | None = None
-) -> str:
+def source(program: Program, robot: str | None = None, labels: Mapping[str, Sequence[str]] | None = None) -> str:
     """The text of a program, with a comment for readers where a robot is named.
 
     Args:
-        program: in straight lines, for numbers of that type.
-        dtype: "float64" or "float32".
+        program: in straight lines.
         robot: its name.
         labels: names of the entries of q, v, a.
     """
     name = NAME if robot is None else function_name(program, robot)
-    own = shape(program.inputs, program.outputs, dtype)
-    signature = _signature(program, name, dtype)
+    own = shape(program.inputs, program.outputs, program.float_type)
+    signature = _signature(program, name)
     remarks = REMARKS.format(own.threads)
     head = [] if robot is None else [*comment(program, robot, labels or {}, signature, remarks)]
-    return "\n".join([*head, *_functions(dtype, own), *_kernel(program, dtype, signature, own), ""])
+    return "\n".join([*head, *_functions(program, own), *_kernel(program, signature, own), ""])
 
 
-def _signature(program: Program, name: str, dtype: str) -> str:
-    real = DIALECTS[dtype].real
+def _signature(program: Program, name: str) -> str:
+    real = program.float_type.c_name
     arrays = [(f"const {real} *", field) for field in program.inputs]
     arrays += [(f"{real} *", field) for field in program.outputs]
     each = (f"{pointer}{x.name}, long long {x.name}_row, long long {x.name}_column" for pointer, x in arrays)
     return f"void {name}({', '.join(('long long states', *each, 'unsigned long long *first_bad'))})"
 
 
-def _kernel(program: Program, dtype: str, signature: str, own: Shape) -> Iterator[str]:
+def _kernel(program: Program, signature: str, own: Shape) -> Iterator[str]:
     """The kernel: each block takes as many states as it has threads, and goes on by as many as there are threads."""
-    inputs, outputs, real = program.inputs, program.outputs, DIALECTS[dtype].real
+    inputs, outputs, real = program.inputs, program.outputs, program.float_type.c_name
     yield "#ifdef __cplusplus"
     yield 'extern "C"'
     yield "#endif"
@@ -161,7 +156,7 @@ def _kernel(program: Program, dtype: str, signature: str, own: Shape) -> Iterato
     yield "        const long long state = first + threadIdx.x;"
     yield from _moves("gather", inputs, own)
     yield "        if (threadIdx.x < count) {"
-    yield from (f"            {line}" for line in _state(program, dtype, own))
+    yield from (f"            {line}" for line in _state(program, own))
     yield "        }"
     if own.pitch:
         yield "        __syncthreads();"
@@ -181,9 +176,9 @@ def _moves(what: str, fields: Sequence[Field], own: Shape) -> Iterator[str]:
         yield "        __syncthreads();"
 
 
-def _state(program: Program, dtype: str, own: Shape) -> Iterator[str]:
+def _state(program: Program, own: Shape) -> Iterator[str]:
     """The operations of one state, and whether all is finite: 0 times what is not is NaN."""
-    inputs, outputs, dialect = program.inputs, program.outputs, DIALECTS[dtype]
+    inputs, outputs, dialect = program.inputs, program.outputs, DIALECTS[program.float_type.name]
 
     def place(field: Field, k: int) -> str:
         if field in own.staged:
@@ -202,12 +197,12 @@ def _state(program: Program, dtype: str, own: Shape) -> Iterator[str]:
     yield f"if (!(check == {zero})) atomicMin(first_bad, (unsigned long long)state);"
 
 
-def _functions(dtype: str, own: Shape) -> Iterator[str]:
+def _functions(program: Program, own: Shape) -> Iterator[str]:
     """What the kernel calls: sines and cosines, and moves between arrays and shared memory."""
-    if dtype == "float64":
+    if program.float_type.bits == 64 and program.operations.sincos:
         yield SINCOS
     if own.pitch:
-        real = DIALECTS[dtype].real
+        real = program.float_type.c_name
         yield _move("gather", f"const {real} *from", f"{real} *to", "to[{0}] = from[{1}]", own)
         yield _move("scatter", f"{real} *to", f"const {real} *from", "to[{1}] = from[{0}]", own)
 
