@@ -1,243 +1,255 @@
-"""Compiled code that moves states between arrays of any layout and the columns that a program works on."""
+"""Compiled code that moves states between arrays of any layout and the columns that a program works on.
+
+Rows, whose numbers lie side by side, are read and written in tiles: a few numbers of LANES rows at a time, exchanged in
+registers. Arrays that lie in columns are copied by vectors. All else goes number by number.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
-from dataclasses import dataclass
 
 from llvmlite import ir
 
 from rttrr_pin.compile.emit.llvm_vectors import Layout
+from rttrr_pin.compile.emit.llvm_writer import I1, I32, I64, PTR, SCALAR, Writer, function, number
 
-I64, F64, F32, PTR, I1 = ir.IntType(64), ir.DoubleType(), ir.FloatType(), ir.PointerType(), ir.IntType(1)
-I32 = ir.IntType(32)
+VOID = ir.VoidType()
 
-LINE = 64
-"""Bytes in a line of the cache."""
+UNROLLED, GROUP = 32, 16
+"""Columns up to which all tiles of a row stand one behind the other; beyond, so many columns in a turn of a loop."""
 
-SCALAR = {64: F64, 32: F32}
-"""The type of numbers of so many bits."""
+TOGETHER = 4
+"""Vectors of a column that are copied in a turn of a loop."""
 
-
-def number(x: int) -> ir.Constant:
-    """An int64."""
-    return ir.Constant(I64, x)
+SUMS = 4
+"""In which what is not finite is looked for: one would wait for itself."""
 
 
-def untyped(address: ir.NamedValue) -> ir.NamedValue:
-    """The address as LLVM sees it, of nothing in particular."""
-    address.type = PTR
-    return address
+class Columns:
+    """Columns of a block of states in memory, as one function sees them."""
+
+    def __init__(self, w: Writer, layout: Layout, base: ir.Value) -> None:
+        self.w, self.base, self.lanes, self.size = w, base, layout.lanes, layout.float_type.size
+        self.scalar = SCALAR[layout.float_type.bits]
+        self.vector = ir.VectorType(self.scalar, layout.lanes)
+        self._pitch = layout.pitch * self.size
+
+    def at(self, column: ir.Value, state: ir.Value) -> ir.Value:
+        """Where a column has the number of a state."""
+        b = self.w.builder
+        base = self.w.offset(self.base, b.mul(state, number(self.size)))
+        return self.w.offset(base, b.mul(column, number(self._pitch)))
+
+    def get(self, column: ir.Value, state: ir.Value) -> ir.Value:
+        """The vector of a column from a state on."""
+        return self.w.load(self.vector, self.at(column, state), self.size)
+
+    def put(self, value: ir.Value, column: ir.Value, state: ir.Value) -> None:
+        """Write it, from numbers of either type."""
+        b = self.w.builder
+        if value.type.element is not self.scalar:
+            value = (b.fptrunc if self.size == 4 else b.fpext)(value, self.vector)
+        self.w.store(value, self.at(column, state), self.size)
 
 
-@dataclass
-class Writer:
-    """Writes one function."""
+def pack(module: ir.Module, layout: Layout, bits: int, width: int) -> ir.Function:
+    """Gather m states of an array, with so many numbers of so many bits each; lanes beyond m repeat the last state."""
+    routine, w = function(module, f"pack_f{bits}_{width}", VOID, [PTR, I64, I64, PTR, I64])
+    source, row, column, target, m = routine.args
+    b, W, size = w.builder, layout.lanes, bits // 8
+    columns = Columns(w, layout, target)
+    full = b.and_(m, number(-W))
+    # Twice: whole vectors, then the rest, where the last state is repeated in the lanes beyond it. Such vectors need no
+    # code of their own in a program, and what is repeated raises no NaN that is not that state's.
+    with w.loop(number(2)) as rest:
+        whole = b.icmp_signed("==", rest, number(0))
+        start, stop = b.select(whole, number(0), full), b.select(whole, full, m)
+        last = b.select(whole, number(W), b.sub(m, b.add(full, number(1))))
+        steps = [b.mul(w.least(number(k), last), row) for k in range(1, W)]
 
-    builder: ir.IRBuilder
+        def vectors() -> Iterator[tuple[list[ir.Value], ir.Value]]:
+            """The rows of each vector, and the first of its states."""
+            with w.loop(stop, W, start) as i:
+                first = w.offset(source, b.mul(i, row))
+                yield [first, *(w.offset(first, step) for step in steps)], i
 
-    def offset(self, base: ir.Value, bytes_: ir.Value | int) -> ir.Value:
-        """The address so many bytes further."""
-        by = number(bytes_) if isinstance(bytes_, int) else bytes_
-        return self.builder.gep(base, [by], source_etype=ir.IntType(8))
-
-    def load(self, ir_type: ir.Type, address: ir.Value, align: int | None = None) -> ir.Value:
-        """What stands at an address."""
-        return self.builder.load(address, typ=ir_type, align=align)
-
-    def store(self, value: ir.Value, address: ir.Value, align: int | None = None) -> None:
-        """Write to an address."""
-        self.builder.store(value, address, align=align)
-
-    @contextmanager
-    def loop(self, stop: ir.Value, step: int = 1, start: ir.Value | None = None) -> Iterator[ir.Value]:
-        """From start (0) to stop by step."""
-        b = self.builder
-        first, body_, after = (b.append_basic_block(name) for name in ("head", "body", "after"))
-        before = b.block
-        b.branch(first)
-        b.position_at_end(first)
-        i = b.phi(I64)
-        i.add_incoming(start or number(0), before)
-        b.cbranch(b.icmp_signed("<", i, stop), body_, after)
-        b.position_at_end(body_)
-        yield i
-        i.add_incoming(b.add(i, number(step)), b.block)
-        b.branch(first)
-        b.position_at_end(after)
-
-    def memory(self, ir_type: ir.Type, count: int = 1) -> ir.Value:
-        """Memory of this function's own, on a cache line."""
-        memory = self.builder.alloca(ir_type, count)
-        memory.align = LINE
-        return untyped(memory)
-
-    def aligned(self, address: ir.Value) -> ir.Value:
-        """The next address on a cache line."""
-        b = self.builder
-        return b.inttoptr(b.and_(b.add(b.ptrtoint(address, I64), number(LINE - 1)), number(-LINE)), PTR)
-
-    def require(self, condition: ir.Value, otherwise: ir.Block) -> None:
-        """Go on where the condition holds."""
-        on = self.builder.append_basic_block("on")
-        self.builder.cbranch(condition, on, otherwise)
-        self.builder.position_at_end(on)
-
-    def least(self, x: ir.Value, y: ir.Value) -> ir.Value:
-        """The smaller of two."""
-        return self.builder.select(self.builder.icmp_signed("<", x, y), x, y)
-
-
-def function(
-    module: ir.Module, name: str, result: ir.Type, arguments: Sequence[ir.Type], internal: bool = True
-) -> tuple[ir.Function, Writer]:
-    """A new function and what writes it; an internal one keeps its code to itself, and is not copied into others."""
-    function = ir.Function(module, ir.FunctionType(result, arguments), name)
-    if internal:
-        function.linkage = "internal"
-        function.attributes.add("noinline")
-    return function, Writer(ir.IRBuilder(function.append_basic_block("start")))
-
-
-def pack(module: ir.Module, layout: Layout, bits: int) -> ir.Function:
-    """Gather m states of an array of numbers of so many bits into columns; lanes beyond m repeat the last state."""
-    routine, w = function(module, f"pack_f{bits}", ir.VoidType(), [PTR, I64, I64, I64, PTR, I64])
-    source, row, column, count, target, m = routine.args
-    b, W, pitch, size = w.builder, layout.lanes, number(layout.pitch * layout.float_type.size), layout.float_type.size
-    same = bits == layout.float_type.bits
-    if same:
-        _copy_columns(w, layout, (source, column), (target, pitch), (row, count, m))
-    last = b.sub(m, number(1))
-    with w.loop(m, W) as i:
-        # Beyond the last state the last one is repeated: whole vectors need no code of their own for the rest, and a
-        # state that is there raises no NaN that is not its own.
-        rows = [w.offset(source, b.mul(w.least(b.add(i, number(k)), last), row)) for k in range(W)]
-        to = w.offset(target, _bytes(b, layout, i))
-        squares = _squares(b, layout, column, count) if same else number(0)
-        with w.loop(squares, W) as j:
-            at = _bytes(b, layout, j)
-            for k, x in enumerate(_transposed(b, [w.load(_vector(layout), w.offset(x, at), size) for x in rows])):
-                w.store(x, w.offset(to, b.mul(b.add(j, number(k)), pitch)), size)
-        with w.loop(count, 1, squares) as j:
-            at = b.mul(j, column)
-            value: ir.Value = ir.Constant(_vector(layout), ir.Undefined)
-            for k, x in enumerate(rows):
-                item = _converted(b, layout, w.load(SCALAR[bits], w.offset(x, at), 1))
-                value = b.insert_element(value, item, ir.Constant(I32, k))
-            w.store(value, w.offset(to, b.mul(j, pitch)), size)
+        in_columns = b.and_(whole, b.icmp_signed("==", row, number(size)))
+        with b.if_else(in_columns) as (copied, gathered):
+            with copied, w.loop(number(width)) as j:
+                x = w.offset(source, b.mul(j, column))
+                for i in _vectors(w, layout, full):
+                    columns.put(w.load(_vector(bits, W), w.offset(x, b.mul(i, number(size))), size), j, i)
+            with gathered, b.if_else(b.icmp_signed("==", column, number(size))) as (side_by_side, apart):
+                with side_by_side:
+                    for rows, i in vectors():
+                        rows_in(columns, bits, width, rows, i)
+                with apart:
+                    for rows, i in vectors():
+                        with w.loop(number(width)) as j:
+                            value: ir.Value = ir.Constant(_vector(bits, W), ir.Undefined)
+                            for k, x in enumerate(rows):
+                                item = w.load(SCALAR[bits], w.offset(x, b.mul(j, column)), size)
+                                value = b.insert_element(value, item, ir.Constant(I32, k))
+                            columns.put(value, j, i)
     b.ret_void()
     return routine
 
 
-def unpack(module: ir.Module, layout: Layout) -> ir.Function:
-    """Scatter m states from columns into an array."""
-    routine, w = function(module, "unpack", ir.VoidType(), [PTR, I64, I64, I64, PTR, I64])
-    target, row, column, count, source, m = routine.args
-    b, W, pitch, size = w.builder, layout.lanes, number(layout.pitch * layout.float_type.size), layout.float_type.size
-    _copy_columns(w, layout, (source, pitch), (target, column), (row, count, m))
+def unpack(module: ir.Module, layout: Layout, width: int) -> ir.Function:
+    """Scatter m states from columns into an array; returns whether a number among them is not finite."""
+    routine, w = function(module, f"unpack_{width}", I1, [PTR, I64, I64, PTR, I64])
+    target, row, column, source, m = routine.args
+    b, W = w.builder, layout.lanes
+    columns = Columns(w, layout, source)
+    size = number(columns.size)
     full = b.and_(m, number(-W))  # the array has no room for repeated states: what fills no vector goes one by one
-    squares = _squares(b, layout, column, count)
-    with w.loop(full, W) as i:
-        rows = [w.offset(target, b.mul(b.add(i, number(k)), row)) for k in range(W)]
-        origin = w.offset(source, _bytes(b, layout, i))
-        with w.loop(squares, W) as j:
-            columns = [w.offset(origin, b.mul(b.add(j, number(k)), pitch)) for k in range(W)]
-            at = _bytes(b, layout, j)
-            for y, x in zip(rows, _transposed(b, [w.load(_vector(layout), x, size) for x in columns]), strict=True):
-                w.store(x, w.offset(y, at), size)
-        with w.loop(count, 1, squares) as j:
-            at = b.mul(j, column)
-            value = w.load(_vector(layout), w.offset(origin, b.mul(j, pitch)), size)
-            for k, y in enumerate(rows):
-                w.store(b.extract_element(value, ir.Constant(I32, k)), w.offset(y, at), 1)
-    with w.loop(m, 1, full) as i:
-        to, origin = w.offset(target, b.mul(i, row)), w.offset(source, _bytes(b, layout, i))
-        with w.loop(count) as j:
-            w.store(w.load(_scalar(layout), w.offset(origin, b.mul(j, pitch))), w.offset(to, b.mul(j, column)), 1)
-    b.ret_void()
+    sound = Sound(w, columns.vector)
+    done = w.memory(I64)
+    w.store(full, done)
+    with b.if_else(b.icmp_signed("==", row, size)) as (in_columns, in_rows):
+        with in_columns, w.loop(number(width)) as j:
+            y = w.offset(target, b.mul(j, column))
+            for i in _vectors(w, layout, full):
+                w.store(sound.seen(columns.get(j, i)), w.offset(y, b.mul(i, size)), columns.size)
+        with in_rows, b.if_else(b.icmp_signed("==", column, size)) as (side_by_side, apart):
+            with side_by_side, w.loop(full, W) as i:
+                first = w.offset(target, b.mul(i, row))
+                rows_out(columns, width, [w.offset(first, b.mul(number(k), row)) for k in range(W)], i, sound)
+            with apart:
+                w.store(number(0), done)
+    single = Sound(w, columns.scalar)
+    with w.loop(number(width)) as j, w.loop(m, 1, w.load(I64, done)) as i:
+        value = single.seen(w.load(columns.scalar, columns.at(j, i), columns.size))
+        y = w.offset(target, b.mul(j, column))
+        w.store(value, w.offset(y, b.mul(i, row)), columns.size)
+    b.ret(b.not_(b.and_(sound.all(), single.all())))
     return routine
-
-
-def _scalar(layout: Layout) -> ir.Type:
-    """The type of the numbers in columns."""
-    return SCALAR[layout.float_type.bits]
-
-
-def _vector(layout: Layout) -> ir.Type:
-    """As many of them as the processor computes at once."""
-    return ir.VectorType(_scalar(layout), layout.lanes)
-
-
-def _bytes(b: ir.IRBuilder, layout: Layout, count: ir.Value) -> ir.Value:
-    """How many bytes so many of them take."""
-    return b.shl(count, number(layout.float_type.size.bit_length() - 1))
-
-
-def _converted(b: ir.IRBuilder, layout: Layout, x: ir.Value) -> ir.Value:
-    """A number of an array as one of the columns."""
-    if x.type is _scalar(layout):
-        return x
-    return b.fptrunc(x, F32) if x.type is F64 else b.fpext(x, F64)
-
-
-def _copy_columns(
-    w: Writer,
-    layout: Layout,
-    source: tuple[ir.Value, ir.Value],
-    target: tuple[ir.Value, ir.Value],
-    sizes: tuple[ir.Value, ir.Value, ir.Value],
-) -> None:
-    """Where the array itself lies in columns, and m fills vectors: copy them, and return from the function."""
-    b, (row, count, m), size = w.builder, sizes, layout.float_type.size
-    fills = b.icmp_signed("==", b.and_(m, number(layout.lanes - 1)), number(0))
-    with b.if_then(b.and_(b.icmp_signed("==", row, number(size)), fills)):
-        with w.loop(count) as j:
-            x, y = (w.offset(base, b.mul(j, distance)) for base, distance in (source, target))
-            with w.loop(m, layout.lanes) as i:
-                at = _bytes(b, layout, i)
-                w.store(w.load(_vector(layout), w.offset(x, at), size), w.offset(y, at), size)
-        b.ret_void()
-
-
-def _squares(b: ir.IRBuilder, layout: Layout, column: ir.Value, count: ir.Value) -> ir.Value:
-    """Columns that are moved in squares of LANES by LANES: those that lie side by side in memory."""
-    adjacent = b.icmp_signed("==", column, number(layout.float_type.size))
-    return b.select(adjacent, b.and_(count, number(-layout.lanes)), number(0))
-
-
-def _transposed(b: ir.IRBuilder, rows: list[ir.Value]) -> list[ir.Value]:
-    """The columns of a square whose rows are vectors: halves exchanged, then quarters, and so on."""
-    W = len(rows)
-    step = W // 2
-    while step:
-        for i in (i for i in range(W) if not i & step):
-            x, y = rows[i], rows[i + step]
-            low = [k if not k & step else W + k - step for k in range(W)]
-            high = [k + step if not k & step else W + k for k in range(W)]
-            rows[i], rows[i + step] = (
-                b.shuffle_vector(x, y, ir.Constant(ir.VectorType(I32, W), mask)) for mask in (low, high)
-            )
-        step //= 2
-    return rows
 
 
 def unsound(module: ir.Module, layout: Layout) -> ir.Function:
-    """Whether m states have a number that is not finite: 0 x is 0 but for those, where it is NaN."""
-    routine, w = function(module, "unsound", I1, [PTR, I64, I64])
-    source, count, m = routine.args
-    b, W, size = w.builder, layout.lanes, layout.float_type.size
-    zero = ir.Constant(_vector(layout), [0.0] * W)
-    integers = ir.VectorType(ir.IntType(layout.float_type.bits), W)
-    unsound_lanes = w.memory(integers)
-    w.store(ir.Constant(integers, [0] * W), unsound_lanes)
-    with w.loop(count) as j:
-        column = w.offset(source, b.mul(j, number(layout.pitch * size)))
-        with w.loop(m, W) as i:
-            product = b.fmul(w.load(_vector(layout), w.offset(column, _bytes(b, layout, i)), size), zero)
-            bad = b.sext(b.fcmp_unordered("uno", product, zero), integers)
-            w.store(b.or_(w.load(integers, unsound_lanes), bad), unsound_lanes)
-    # Looked at once, behind the loops: a branch in each would cost more than the products.
-    none = b.icmp_signed("==", w.load(integers, unsound_lanes), ir.Constant(integers, [0] * W))
-    b.ret(b.icmp_unsigned("!=", b.bitcast(none, ir.IntType(W)), ir.Constant(ir.IntType(W), -1)))
+    """Whether a number among m states of a column is not finite."""
+    routine, w = function(module, "unsound", I1, [PTR, I64])
+    source, m = routine.args
+    columns = Columns(w, layout, source)
+    sound = Sound(w, columns.vector)
+    with w.loop(m, layout.lanes) as i:
+        sound.seen(columns.get(number(0), i))
+    w.builder.ret(w.builder.not_(sound.all()))
     return routine
+
+
+class Sound:
+    """Whether all numbers seen are finite: a sum of 0 x is 0 then, and else NaN.
+
+    Looked at once, in the end: a branch in each loop would cost more than the products.
+    """
+
+    def __init__(self, w: Writer, ir_type: ir.Type) -> None:
+        self._w, self._type, self._seen = w, ir_type, 0
+        self._zero = ir.Constant(ir_type, [0.0] * ir_type.count if isinstance(ir_type, ir.VectorType) else 0.0)
+        self._sums = [w.memory(ir_type) for _ in range(SUMS)]
+        for own in self._sums:
+            w.store(self._zero, own)
+
+    def seen(self, x: ir.Value) -> ir.Value:
+        """The same number or vector."""
+        w, b = self._w, self._w.builder
+        own = self._sums[self._seen % SUMS]
+        self._seen += 1
+        product = b.fmul(x, self._zero, flags=("contract",))
+        w.store(b.fadd(w.load(self._type, own), product, flags=("contract",)), own)
+        return x
+
+    def all(self) -> ir.Value:
+        """Whether all were finite."""
+        b, total = self._w.builder, self._zero
+        for own in self._sums:
+            total = b.fadd(total, self._w.load(self._type, own))
+        finite = b.fcmp_ordered("ord", total, total)
+        if not isinstance(self._type, ir.VectorType):
+            return finite
+        bits = ir.IntType(self._type.count)
+        return b.icmp_unsigned("==", b.bitcast(finite, bits), ir.Constant(bits, -1))
+
+
+def rows_in(columns: Columns, bits: int, width: int, rows: Sequence[ir.Value], state: ir.Value) -> None:
+    """Gather LANES rows whose numbers lie side by side."""
+    w, b, size = columns.w, columns.w.builder, bits // 8
+    for j, count in _tiles(w, columns.lanes, width):
+        chunks = [w.load(_vector(bits, count), w.offset(x, b.mul(j, number(size))), size) for x in rows]
+        # Vector k has the chunks of rows k, k + count, k + 2 count, ...: as many squares side by side.
+        squares = [_joined(b, chunks[k::count]) for k in range(count)]
+        for k, value in enumerate(_transposed(b, squares)):
+            columns.put(value, b.add(j, number(k)), state)
+
+
+def rows_out(columns: Columns, width: int, rows: Sequence[ir.Value], state: ir.Value, sound: Sound) -> None:
+    """Scatter LANES rows whose numbers lie side by side."""
+    w, b, size = columns.w, columns.w.builder, columns.size
+    for j, count in _tiles(w, columns.lanes, width):
+        vectors = [sound.seen(columns.get(b.add(j, number(k)), state)) for k in range(count)]
+        vectors = _transposed(b, vectors)
+        for k, y in enumerate(rows):
+            chunk = _part(b, vectors[k % count], k // count * count, count)
+            w.store(chunk, w.offset(y, b.mul(j, number(size))), size)
+
+
+def _vector(bits: int, count: int) -> ir.Type:
+    """So many numbers of so many bits."""
+    return ir.VectorType(SCALAR[bits], count)
+
+
+def _vectors(w: Writer, layout: Layout, full: ir.Value) -> Iterator[ir.Value]:
+    """First states of all vectors, some in a turn of a loop."""
+    b, turn = w.builder, layout.lanes * TOGETHER
+    together = b.and_(full, number(-turn))
+    with w.loop(together, turn) as i:
+        for k in range(TOGETHER):
+            yield b.add(i, number(k * layout.lanes))
+    with w.loop(full, layout.lanes, together) as i:
+        yield i
+
+
+def _tiles(w: Writer, lanes: int, width: int) -> Iterator[tuple[ir.Value, int]]:
+    """The first column of each tile of rows, and how many: half a vector, and smaller powers of two in the end."""
+    most = max(2, lanes // 2)
+    at = width // GROUP * GROUP if width > UNROLLED else 0
+    if at:
+        with w.loop(number(at), GROUP) as first:
+            for k in range(0, GROUP, most):
+                yield w.builder.add(first, number(k)), most
+    while at < width:
+        count = min(most, 1 << (width - at).bit_length() - 1)
+        yield number(at), count
+        at += count
+
+
+def _joined(b: ir.IRBuilder, vectors: Sequence[ir.Value]) -> ir.Value:
+    """Vectors one behind the other as one."""
+    while len(vectors) > 1:
+        both = ir.Constant(ir.VectorType(I32, 2 * vectors[0].type.count), list(range(2 * vectors[0].type.count)))
+        vectors = [b.shuffle_vector(x, y, both) for x, y in zip(vectors[::2], vectors[1::2], strict=True)]
+    return vectors[0]
+
+
+def _part(b: ir.IRBuilder, vector: ir.Value, first: int, count: int) -> ir.Value:
+    """So many numbers of a vector."""
+    lanes = ir.Constant(ir.VectorType(I32, count), list(range(first, first + count)))
+    return b.shuffle_vector(vector, vector, lanes)
+
+
+def _transposed(b: ir.IRBuilder, vectors: list[ir.Value]) -> list[ir.Value]:
+    """Vectors of squares side by side, each square transposed: halves exchanged, then quarters, and so on."""
+    N, W = len(vectors), vectors[0].type.count
+    vectors = list(vectors)
+    step = N // 2
+    while step:
+        for i in (i for i in range(N) if not i & step):
+            x, y = vectors[i], vectors[i + step]
+            low = [k if not k & step else W + k - step for k in range(W)]
+            high = [k + step if not k & step else W + k for k in range(W)]
+            vectors[i], vectors[i + step] = (
+                b.shuffle_vector(x, y, ir.Constant(ir.VectorType(I32, W), mask)) for mask in (low, high)
+            )
+        step //= 2
+    return vectors

@@ -13,25 +13,15 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from itertools import groupby
 
 from llvmlite import ir
 
 from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.emit import RECORD
-from rttrr_pin.compile.emit.llvm_columns import (
-    I64,
-    LINE,
-    PTR,
-    SCALAR,
-    function,
-    number,
-    pack,
-    unpack,
-    unsound,
-)
+from rttrr_pin.compile.emit.llvm_columns import pack, unpack, unsound
 from rttrr_pin.compile.emit.llvm_python import python_entry
 from rttrr_pin.compile.emit.llvm_vectors import Layout
+from rttrr_pin.compile.emit.llvm_writer import I1, I64, LINE, PTR, SCALAR, function, number
 from rttrr_pin.compile.fields import Field
 from rttrr_pin.compile.program import Program
 
@@ -62,8 +52,9 @@ class _Driver:
         self.fill = ir.Function(module, ir.FunctionType(VOID, [PTR, I64]), "fill")
         self.malloc = ir.Function(module, ir.FunctionType(PTR, [I64]), "malloc")
         self.free = ir.Function(module, ir.FunctionType(VOID, [PTR]), "free")
-        self.pack = {bits: pack(module, layout, bits) for bits in SCALAR}
-        self.unpack = unpack(module, layout)
+        widths_in, widths_out = ({field.width for field in fields} for fields in (program.inputs, program.outputs))
+        self.pack = {(bits, width): pack(module, layout, bits, width) for bits in SCALAR for width in sorted(widths_in)}
+        self.unpack = {width: unpack(module, layout, width) for width in sorted(widths_out)}
         self.unsound = unsound(module, layout)
         self.function, self.w = function(module, "run", I64, [PTR, I64, I64], internal=False)
 
@@ -111,21 +102,20 @@ class _Driver:
         b, program, (inputs, outputs, between) = self.w.builder, self.program, columns
         count = len(program.inputs)
         for (base, row, column, single), field, at in self._placed(arrays[:count], program.inputs, inputs):
-            arguments = [base, row, column, number(field.width), at, m]
+            arguments = [base, row, column, at, m]
             with b.if_else(b.icmp_signed("!=", single, number(0))) as (float32, float64):
                 with float32:
-                    b.call(self.pack[32], arguments)
+                    b.call(self.pack[32, field.width], arguments)
                 with float64:
-                    b.call(self.pack[64], arguments)
+                    b.call(self.pack[64, field.width], arguments)
         padded = self._padded(m)
         # All is read before the first result is written: outputs may lie over inputs of the same block.
         b.call(self.body, [inputs, outputs, between, padded])
-        bad = b.call(self.unsound, [outputs, number(program.width_out), padded])
-        for first, length in _runs(program.unread):  # NaN there would reach no result, and is an error all the same
-            column = self.w.offset(inputs, first * self.column)
-            bad = b.or_(bad, b.call(self.unsound, [column, number(length), padded]))
+        bad: ir.Value = ir.Constant(I1, 0)
+        for index in program.unread:  # NaN there would reach no result, and is an error all the same
+            bad = b.or_(bad, b.call(self.unsound, [self.w.offset(inputs, index * self.column), padded]))
         for (base, row, column, _), field, at in self._placed(arrays[count:], program.outputs, outputs):
-            b.call(self.unpack, [base, row, column, number(field.width), at, m])
+            bad = b.or_(bad, b.call(self.unpack[field.width], [base, row, column, at, m]))
         return bad
 
     def _padded(self, m: ir.Value) -> ir.Value:
@@ -141,10 +131,3 @@ class _Driver:
         for array, field in zip(arrays, fields, strict=True):
             yield array, field, self.w.offset(base, before * self.column)
             before += field.width
-
-
-def _runs(indices: Sequence[int]) -> Iterator[tuple[int, int]]:
-    """Places one behind the other, as the first and their count."""
-    for _, run in groupby(enumerate(indices), lambda pair: pair[1] - pair[0]):
-        together = [index for _, index in run]
-        yield together[0], len(together)

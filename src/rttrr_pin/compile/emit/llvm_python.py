@@ -19,8 +19,8 @@ from llvmlite import ir
 
 from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.emit import FEW, RECORD
-from rttrr_pin.compile.emit.llvm_columns import I1, I32, I64, PTR, Writer, function, number, untyped
 from rttrr_pin.compile.emit.llvm_vectors import Layout
+from rttrr_pin.compile.emit.llvm_writer import I1, I32, I64, PTR, Writer, function, number, untyped
 from rttrr_pin.compile.fields import Field
 from rttrr_pin.compile.program import Program
 
