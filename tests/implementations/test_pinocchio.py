@@ -225,6 +225,6 @@ def test_models_made_from_numbers_are_checked(rttrr: Robot, change: Any, message
 
 
 def test_a_robot_that_does_not_fit_in_memory_is_refused_before_it_is_tried(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("rttrr_pin.implementations.pinocchio.TENSORS", 10**15)
+    monkeypatch.setattr("rttrr_pin.implementations.pinocchio_wrenches.TENSORS", 10**15)
     with pytest.raises(ImplementationError, match="GB for the 5 of this robot.*reference='recursion'"):
         make_implementation("pinocchio", rttrr_pin.load("rttrr").model)

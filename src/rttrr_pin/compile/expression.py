@@ -24,7 +24,7 @@ Number: TypeAlias = int | float
 
 
 class Op(enum.IntEnum):
-    """What a node does. The last three round once: x y + z, x y - z, z - x y."""
+    """What a node does. Fused ones round once: x y + z, x y - z, z - x y. The norm is that of three numbers."""
 
     CONSTANT = 0
     INPUT = 1
@@ -39,6 +39,7 @@ class Op(enum.IntEnum):
     FMA = 10
     FMS = 11
     FNMA = 12
+    NORM = 13
 
 
 FUSED = (Op.FMA, Op.FMS, Op.FNMA)
@@ -185,6 +186,13 @@ class Graph:
             inner = self.function(op, self.args[x][0])
             return inner if op in (Op.COS, Op.ABS) else self.neg(inner)
         return self._node(op, (x,))
+
+    def norm(self, x: int, y: int, z: int) -> int:
+        """The Euclidean norm, as `core.arrays.norm` computes it: no square overflows or vanishes."""
+        bare = [self.args[part][0] if self.op[part] is Op.NEG else part for part in (x, y, z)]
+        if sum(self.is_constant(part, 0) for part in bare) == len(bare) - 1:
+            return self.function(Op.ABS, next(part for part in bare if not self.is_constant(part, 0)))
+        return self._node(Op.NORM, tuple(bare))
 
     def apply(self, op: Op, args: Sequence[int]) -> int:
         """An operation on nodes of this graph, by its constructor."""

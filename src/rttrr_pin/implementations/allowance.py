@@ -242,10 +242,13 @@ def levels(parents: Sequence[int]) -> Array:
     return counts
 
 
+def of_carriers(model: Model, wide: Mapping[str, Any]) -> list[Any]:
+    """What the vectors that driving forces are components of are allowed, a scalar for each degree of freedom."""
+    return [sum((wide[key][link] * weight for weight, key, link in parts), 0.0) for parts in carriers(model)]
+
+
 def _of_carriers(model: Model, wide: Mapping[str, Array]) -> Array:
-    """What the vectors that driving forces are components of are allowed, (N, nv)."""
+    """The same of a batch, (N, nv)."""
+    columns = of_carriers(model, {key: x.T for key, x in wide.items()})
     rows = len(wide["f"])
-    columns = [
-        sum((weight * wide[key][:, link] for weight, key, link in parts), np.zeros(rows)) for parts in carriers(model)
-    ]
-    return np.stack(columns, axis=1) if columns else np.zeros((rows, 0))
+    return np.stack([np.broadcast_to(x, rows) for x in columns], axis=1) if columns else np.zeros((rows, 0))

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rttrr_pin.core.arrays import Array, norm, product
+from rttrr_pin.core.model import Model
 
 
 class PinLinks(NamedTuple):
@@ -63,3 +64,9 @@ class PinLinks(NamedTuple):
         n = n - np.cross(self.p, f)
         R_T = np.swapaxes(self.R, -1, -2)
         return np.concatenate([product(R_T, f), product(R_T, n)], axis=-1)
+
+
+def carriers(model: Model, links: PinLinks) -> list[int]:
+    """The fixed link that carries each link; -1 where a joint that moves does, or the base."""
+    parents = (joint.parent for joint in model.joints)
+    return [p if p >= 0 and links.fixed[p] else -1 for p in parents]

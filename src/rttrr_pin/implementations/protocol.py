@@ -17,8 +17,8 @@ from rttrr_pin.core.payload import Load
 from rttrr_pin.core.wrench import LINK_QUANTITIES, RESULTS, LinkWrenches
 from rttrr_pin.errors import ImplementationError, NumberError, RefusalError, RttrrError, because, told
 
-LARGEST = 16
-"""Links up to which a program with bounds compiles in two seconds or less; it is kept on disk from then on."""
+LARGEST = 64
+"""Links up to which a program with bounds compiles in some seconds; it is kept on disk from then on."""
 
 
 @lru_cache(maxsize=8)

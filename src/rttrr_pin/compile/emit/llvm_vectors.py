@@ -14,6 +14,12 @@ from rttrr_pin.compile.float_type import FLOAT64, FloatType
 from rttrr_pin.compile.program import Program
 from rttrr_pin.compile.sincos import COSINE, LARGEST, PIO2, ROUND, SINE, TWO_OVER_PI
 
+FAR = 2.0**-500
+"""Below it, and above its inverse, squares may leave the normal numbers of float64."""
+
+SHRINK = 2.0**-600
+"""What vectors of large numbers are multiplied by before they are squared; those of small ones are divided by it."""
+
 BINARY = {Op.ADD: "fadd", Op.SUB: "fsub", Op.MUL: "fmul"}
 
 
@@ -74,6 +80,14 @@ class Lines:
         v = self.vector
         return self(f"call {v} @llvm.fma.{self.suffix}({v} {x}, {v} {y}, {v} {z})")
 
+    def function(self, name: str, x: str) -> str:
+        """A function that the processor has."""
+        return self(f"call {self.vector} @llvm.{name}.{self.suffix}({self.vector} {x})")
+
+    def select(self, where: str, x: str, y: str) -> str:
+        """One of two vectors, lane by lane."""
+        return self(f"select <{self.lanes} x i1> {where}, {self.vector} {x}, {self.vector} {y}")
+
     def negated(self, x: str) -> str:
         """The opposite."""
         return self(f"fneg {self.vector} {x}")
@@ -114,6 +128,7 @@ def declarations(layout: Layout) -> Iterator[str]:
     v = lines.vector
     yield f"declare {v} @llvm.fma.{lines.suffix}({v}, {v}, {v})"
     yield f"declare {v} @llvm.fabs.{lines.suffix}({v})"
+    yield f"declare {v} @llvm.sqrt.{lines.suffix}({v})"
     yield "declare double @sin(double)"
     yield "declare double @cos(double)"
 
@@ -189,7 +204,9 @@ class VectorCode:
         elif op is Op.SIGN:
             name = self._sign(self.get(args[0]))
         elif op is Op.ABS:
-            name = lines(f"call {lines.vector} @llvm.fabs.{lines.suffix}({lines.vector} {self.get(args[0])})")
+            name = lines.function("fabs", self.get(args[0]))
+        elif op is Op.NORM:
+            name = _norm(lines, [self.get(y) for y in args])
         else:
             if args[0] not in self.angles:
                 self.angles[args[0]] = self._sincos(self.get(args[0]))
@@ -238,6 +255,24 @@ class VectorCode:
             y = lines(f"call double @{name}(double {x})")
             new = lines(f"insertelement {v} {new}, double {y}, i32 {lane}")
         return lines(f"select <{lines.lanes} x i1> {beyond}, {v} {new}, {v} {old}")
+
+
+def _norm(lines: Lines, parts: list[str]) -> str:
+    """The root of the sum of squares, of float64; large and small vectors are scaled by a power of two meanwhile."""
+    sizes = [lines.function("fabs", x) for x in parts]
+    most = sizes[0]
+    for size in sizes[1:]:
+        most = lines.select(lines(f"fcmp ogt {lines.vector} {size}, {most}"), size, most)
+    large = lines(f"fcmp ogt {lines.vector} {most}, {lines.splat(1 / FAR)}")
+    small = lines(f"fcmp olt {lines.vector} {most}, {lines.splat(FAR)}")
+    down, up = (
+        lines.select(large, lines.splat(shrink), lines.select(small, lines.splat(1 / shrink), lines.splat(1.0)))
+        for shrink in (SHRINK, 1 / SHRINK)
+    )
+    scaled = [lines.op("fmul", size, down) for size in sizes]
+    squares = [lines.op("fmul", x, x) for x in scaled]
+    total = lines.op("fadd", lines.op("fadd", squares[0], squares[1]), squares[2])
+    return lines.op("fmul", lines.function("sqrt", total), up)
 
 
 def polynomials(lines: Lines, q: str) -> tuple[str, str]:

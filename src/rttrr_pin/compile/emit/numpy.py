@@ -13,6 +13,7 @@ from rttrr_pin.compile.emit import Array, Task
 from rttrr_pin.compile.expression import LEAVES, Op
 from rttrr_pin.compile.fields import Field
 from rttrr_pin.compile.program import Program
+from rttrr_pin.core.arrays import norm
 
 BLOCK = 512
 """States computed at a time."""
@@ -26,6 +27,7 @@ FORM = {
     Op.COS: "cos({})",
     Op.SIGN: "sign({})",
     Op.ABS: "abs({})",
+    Op.NORM: "norm({}, {}, {})",
 }
 """Each operation in Python."""
 
@@ -47,9 +49,20 @@ class NumpyEmitter:
 
     def load(self, code: bytes, inputs: Sequence[Field], outputs: Sequence[Field]) -> NumpyExecutable:
         """Make the function."""
-        space: dict[str, Any] = {"sin": np.sin, "cos": np.cos, "sign": np.sign, "inf": np.inf, "nan": np.nan}
+        space: dict[str, Any] = {
+            "sin": np.sin,
+            "cos": np.cos,
+            "sign": np.sign,
+            "norm": _norm,
+            "inf": np.inf,
+            "nan": np.nan,
+        }
         exec(compile(code, "<program>", "exec"), space)
         return NumpyExecutable(space["program"])
+
+
+def _norm(*parts: Any) -> NDArray[np.float64]:
+    return norm(np.stack(np.broadcast_arrays(*parts), axis=-1))
 
 
 def _straight(function: str, program: Program) -> Iterator[str]:
