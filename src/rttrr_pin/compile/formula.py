@@ -53,19 +53,22 @@ class Formula:
     """A function over scalars, ready to run on any number of states."""
 
     def __init__(
-        self, function: Function, inputs: Mapping[str, int], outputs: Mapping[str, int], compiled: bool = True
+        self, function: Function, inputs: Mapping[str, int], outputs: Mapping[str, int], identity: str | None
     ) -> None:
-        """Trace and compile.
+        """Compile, or read what another process has compiled before.
 
         Args:
             function: from the scalars of each input, by name, to those of each output.
             inputs: how many numbers each has in one state.
             outputs: likewise.
-            compiled: whether it is to be compiled, which takes a tenth of a second or more the first time.
+            identity: tells all numbers that the function depends on, so that compiled code is known again; None where
+                it is not worth compiling, and runs on arrays.
         """
         self._function = function
-        self._inputs, self._outputs = ([Field(*own) for own in _fields(x)] for x in (inputs, outputs))
-        self._variant = self._compiled() if compiled else None
+        self._inputs, self._outputs = (
+            tuple(Field(name, (width,)) for name, width in x.items()) for x in (inputs, outputs)
+        )
+        self._variant = None if identity is None else self._compiled(identity)
 
     def __call__(self, rows: int, arrays: Mapping[str, NDArray[Any]]) -> dict[str, Array]:
         """The outputs at so many states.
@@ -87,34 +90,29 @@ class Formula:
             threads.run(task, rows, threads.count(None, rows * (self._variant.width_in + self._variant.width_out)))
         return results
 
-    def _compiled(self) -> Variant | None:
+    def _compiled(self, identity: str) -> Variant | None:
         """The function, compiled; None where it is too long for that."""
-        graph = Graph(most=LARGEST)
-        columns = iter([Node(graph, graph.input(k)) for k in range(sum(own.width for own in self._inputs))])
-        scalars = {own.name: [next(columns) for _ in range(own.width)] for own in self._inputs}
-        try:
-            results = self._function(TRACED, scalars)
-        except GraphFullError:
-            return None
-        numbers = [x.number if isinstance(x, Node) else graph.constant(float(x)) for x in self._in_order(results)]
-        fields_in, fields_out = tuple(self._inputs), tuple(self._outputs)
-        program, own = Program(graph, fields_in, fields_out, tuple(numbers)), emitter()
-        name = cache.key(
-            own.identity,
-            "formula",
-            *map(repr, (fields_in, fields_out, numbers, graph.op, graph.args)),
-            repr(sorted(graph.value.items())),
-        )
+        own = emitter()
+        name = cache.key(own.identity, "formula", repr((self._inputs, self._outputs)), identity)
         code = cache.read(name)
         if code is None:
+            try:
+                program = self._traced()
+            except GraphFullError:
+                return None
             with threads.COMPILING:
                 code = own.emit(program)
             cache.write(name, code)
-        return Variant(fields_in, fields_out, own.load(code, fields_in, fields_out))
+        return Variant(self._inputs, self._outputs, own.load(code, self._inputs, self._outputs))
 
-    def _in_order(self, results: Mapping[str, Sequence[Scalar]]) -> list[Any]:
-        """The scalars of the outputs one behind the other."""
-        return [x for own in self._outputs for x in results[own.name]]
+    def _traced(self) -> Program:
+        graph = Graph(most=LARGEST)
+        columns = iter([Node(graph, graph.input(k)) for k in range(sum(own.width for own in self._inputs))])
+        scalars = {own.name: [next(columns) for _ in range(own.width)] for own in self._inputs}
+        results = self._function(TRACED, scalars)
+        ordered: list[Any] = [x for own in self._outputs for x in results[own.name]]
+        numbers = [x.number if isinstance(x, Node) else graph.constant(float(x)) for x in ordered]
+        return Program(graph, self._inputs, self._outputs, tuple(numbers))
 
     def _on_arrays(self, inputs: Sequence[Array], results: Mapping[str, Array]) -> None:
         scalars: dict[str, list[Any]] = {own.name: list(x.T) for own, x in zip(self._inputs, inputs, strict=True)}
@@ -122,10 +120,6 @@ class Formula:
         for name, out in results.items():
             for row, x in zip(out, columns[name], strict=True):
                 row[:] = x
-
-
-def _fields(widths: Mapping[str, int]) -> list[tuple[str, tuple[int]]]:
-    return [(name, (width,)) for name, width in widths.items()]
 
 
 def _norm_of_nodes(parts: Iterable[Any]) -> Scalar:

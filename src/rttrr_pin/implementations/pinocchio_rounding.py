@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from rttrr_pin.compile.formula import Formula, Sizes
+from rttrr_pin.compile.variant import fingerprint
 from rttrr_pin.core.algebra import ZERO, Vector
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.dynamics import bodies, joint_states
@@ -97,9 +98,8 @@ class Rounding:
         widths = {"q": model.nq, "v": model.nv, "a": model.nv, "tau_joint": model.nv}
         widths |= {f"{kind}_{key}": 3 * n for key in LINK_QUANTITIES for kind in ("value", "bound")}
         widths |= {f"load_{k}_{name}": 3 for k in range(len(loads)) for name in "fn"}
-        self._formula = Formula(
-            self._allowance, widths, {"tau": model.nv} | dict.fromkeys(LINK_QUANTITIES, n), compiled
-        )
+        outputs = {"tau": model.nv} | dict.fromkeys(LINK_QUANTITIES, n)
+        self._formula = Formula(self._allowance, widths, outputs, self._identity() if compiled else None)
 
     def __call__(self, batch: Batch, values: Mapping[str, Array], tau_joint: Array) -> dict[str, Array]:
         """At most how far Pinocchio's results are from the true values, by rounding: tau (N, nv), others (N, links)."""
@@ -111,6 +111,12 @@ class Rounding:
         for k, load in enumerate(batch.loads):
             arrays |= {f"load_{k}_f": np.atleast_2d(load.f), f"load_{k}_n": np.atleast_2d(load.n)}
         return {key: x.T for key, x in self._formula(rows, arrays).items()}
+
+    def _identity(self) -> str:
+        """All numbers that the formula depends on."""
+        arrays = (self._mass, self._lever, self._tensor, self._off_lever, *self._links)
+        own = (self._parents, self._oblique, self._loads, self._lengths, [x.tobytes() for x in arrays])
+        return repr((fingerprint(self._model), own))
 
     def _inertias(self, pin_model: Any, apart: Mapping[int, Scales]) -> None:
         """Sizes of what Pinocchio has on each joint, and how far they may be off, in the unit of all sizes here."""
