@@ -54,8 +54,9 @@ from rttrr_pin.implementations.pinocchio_model import (
     pin_links,
     snapped_axes,
 )
+from rttrr_pin.implementations.pinocchio_parallel import Wrenches
 from rttrr_pin.implementations.pinocchio_rounding import Rounding
-from rttrr_pin.implementations.pinocchio_wrenches import Wrenches, WrenchModels, data_bytes
+from rttrr_pin.implementations.pinocchio_wrenches import WrenchModels, data_bytes
 from rttrr_pin.implementations.protocol import Batch, Evaluation
 
 
@@ -105,7 +106,7 @@ class Pinocchio:
         states = own_states(self.model, batch)
         motion = Motion.of(self.joints, states, len(batch), self.pin_model.nq, self.pin_model.nv, _in_cosines)
         loads = self._in_link_axes(batch.loads, motion.q)
-        wrenches = self._programs(tuple(load.link for load in loads)).wrenches(motion, loads)
+        wrenches = self._run(motion, loads)
         f, n = self._across_joints(wrenches, loads)
         F, N = (np.moveaxis(x, -1, 0) for x in (wrenches.F, wrenches.N))
         tau, tau_joint = driving_forces(self.model, self.joints, states, wrenches.tau.T, has_armature=True)
@@ -115,6 +116,19 @@ class Pinocchio:
             changed = of_other_numbers(batch, self.built)
             allowance = {key: x + changed[key] for key, x in allowance.items()}
         return Evaluation(values, allowance, tau_joint)
+
+    def _run(self, motion: Motion, loads: Sequence[Load]) -> Wrenches:
+        """The wrenches of all states; of those without any payload by a model without it, so that zeros are zeros."""
+        carries = np.any([load.f.any(axis=1) | load.n.any(axis=1) for load in loads], axis=0) if loads else np.False_
+        if carries.all() or not carries.any():
+            acting = loads if carries.any() else ()
+            return self._programs(tuple(load.link for load in acting)).wrenches(motion, acting)
+        parts = []
+        for which, acting in ((carries, loads), (~carries, ())):
+            own = Motion(*(x[which] for x in (motion.q, motion.v, motion.a)))
+            parts.append(self._run(own, [Load(load.link, load.f[which], load.n[which]) for load in acting]))
+        order = np.argsort(np.concatenate([np.flatnonzero(carries), np.flatnonzero(~carries)]))
+        return Wrenches(*(np.concatenate(pair, axis=-1)[..., order] for pair in zip(*parts, strict=True)))
 
     def _programs(self, loaded: tuple[int, ...]) -> WrenchModels | StateByState:
         """What runs Pinocchio, with payloads at these links."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -70,3 +71,12 @@ def carriers(model: Model, links: PinLinks) -> list[int]:
     """The fixed link that carries each link; -1 where a joint that moves does, or the base."""
     parents = (joint.parent for joint in model.joints)
     return [p if p >= 0 and links.fixed[p] else -1 for p in parents]
+
+
+def where_inertia_acts(links: PinLinks, carrier: Sequence[int]) -> list[bool]:
+    """Of each link, whether anything but loads acts on it or behind: not so on some fixed ones."""
+    acts: list[bool] = (~links.fixed | links.massive).tolist()
+    for i, p in reversed(list(enumerate(carrier))):
+        if p >= 0:
+            acts[p] = acts[p] or acts[i]
+    return acts

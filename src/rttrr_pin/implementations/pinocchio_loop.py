@@ -24,7 +24,7 @@ from rttrr_pin.core.payload import Load
 from rttrr_pin.implementations.allowance import sum_inwards
 from rttrr_pin.implementations.library import Motion
 from rttrr_pin.implementations.pinocchio_links import PinLinks, carriers
-from rttrr_pin.implementations.pinocchio_wrenches import Wrenches
+from rttrr_pin.implementations.pinocchio_parallel import Wrenches
 
 
 class StateByState:

@@ -25,7 +25,7 @@ import numpy as np
 from rttrr_pin.compile.formula import Formula, Sizes
 from rttrr_pin.compile.variant import fingerprint
 from rttrr_pin.core.algebra import ZERO, Vector
-from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.arrays import Array, norm
 from rttrr_pin.core.dynamics import bodies, joint_states
 from rttrr_pin.core.energy import link_states
 from rttrr_pin.core.joints.base import JointState
@@ -35,8 +35,8 @@ from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import LINK_QUANTITIES
 from rttrr_pin.implementations.allowance import HANDOVER, of_carriers
 from rttrr_pin.implementations.library import Scales, norms
-from rttrr_pin.implementations.pinocchio_links import PinLinks, carriers
-from rttrr_pin.implementations.pinocchio_wrenches import FEATHER
+from rttrr_pin.implementations.pinocchio_links import PinLinks, carriers, where_inertia_acts
+from rttrr_pin.implementations.pinocchio_parallel import FEATHER
 from rttrr_pin.implementations.protocol import Batch
 
 OPERATIONS = 4
@@ -93,7 +93,7 @@ class Rounding:
         self._lengths = norms(x.translation for x in pin_model.jointPlacements).tolist()
         self._inertias(pin_model, apart)
         self._carrier = carriers(model, links)
-        self._acts = _where_inertia_acts(links, self._carrier)
+        self._acts = where_inertia_acts(links, self._carrier)
         n = len(model.links)
         widths = {"q": model.nq, "v": model.nv, "a": model.nv, "tau_joint": model.nv}
         widths |= {f"{kind}_{key}": 3 * n for key in LINK_QUANTITIES for kind in ("value", "bound")}
@@ -203,7 +203,7 @@ class Rounding:
         moving = link_states(model, links, states, sizes.arithmetic)
         n = len(self._parents)
         speed: Columns = [0.0] * n
-        acceleration: Columns = [float(np.linalg.norm(model.gravity))] + [0.0] * (n - 1)
+        acceleration: Columns = [float(norm(model.gravity))] + [0.0] * (n - 1)
         turning: Columns = [0.0] * n
         for i, (joint, body, state) in enumerate(zip(model.joints, links, states, strict=True)):
             parent = motions[joint.parent] if joint.parent >= 0 else base
@@ -269,7 +269,7 @@ class Rounding:
         behind: list[tuple[Any, Any]] = [(0.0, 0.0)] * len(joints)  # sizes of force and moment at the body's origin
         for i, carrier in enumerate(self._carrier):
             if links.fixed[i]:
-                force, lever = values["F"][i], float(np.linalg.norm(links.com[i]))
+                force, lever = values["F"][i], float(norm(links.com[i]))
                 behind[i] = _plus(behind[i], force, values["N"][i] + force * lever, float(links.arm[i]))
             elif carrier >= 0:
                 behind[carrier] = _plus(behind[carrier], values["f"][i], values["n"][i], reach[joints[i]])
@@ -300,15 +300,6 @@ def _is_oblique(joint: Any) -> bool:
     """Whether a joint turns about an axis that is none of x, y, z: -z is one."""
     kind = joint.shortname()
     return "Revolute" in kind and "Unaligned" in kind
-
-
-def _where_inertia_acts(links: PinLinks, carrier: Sequence[int]) -> list[bool]:
-    """Of each link, whether anything but loads acts on it or behind: not so on some fixed ones."""
-    acts: list[bool] = (~links.fixed | links.massive).tolist()
-    for i, p in reversed(list(enumerate(carrier))):
-        if p >= 0:
-            acts[p] = acts[p] or acts[i]
-    return acts
 
 
 def _finite(values: Array) -> Array:

@@ -23,8 +23,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pinocchio as pin
@@ -34,9 +33,7 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.implementations.library import Motion
 from rttrr_pin.implementations.pinocchio_links import PinLinks
-
-FEATHER = 2.0**-500
-"""Mass [kg] and principal moments [kg m^2] of a feather, which weighs nothing beside any payload."""
+from rttrr_pin.implementations.pinocchio_parallel import FEATHER, Draft, Wrenches, WrenchModel
 
 SLIDING, TURNING = pin.JointModelTranslation, pin.JointModelSpherical
 """Joints of three freedoms."""
@@ -54,47 +51,6 @@ TENSORS = 4
 def data_bytes(nv: int) -> int:
     """What Pinocchio's data takes, where it takes much."""
     return TENSORS * 8 * nv**3
-
-
-class Wrenches(NamedTuple):
-    """What Pinocchio says of a batch, consecutive states side by side.
-
-    Attributes:
-        tau: of every joint moving by itself, (nv, N).
-        crossing: by link, what crosses its joint, at the origin of its body, in the body's axes; force, then moment,
-            (links, 6, N). The payload of a link on a fixed joint is not in its own.
-        F, N: of each link, (links, 3, N).
-    """
-
-    tau: Array
-    crossing: Array
-    F: Array
-    N: Array
-
-
-@dataclass
-class _Draft:
-    """A model with locked joints, as it is built.
-
-    Attributes:
-        model: Pinocchio's.
-        crossing, F, N, feathers: by link, the locked joint from which f, n, F, N are read, or that has its payload.
-        moving: by Pinocchio's number of a joint, the number here.
-        driven: those whose driving force is read.
-    """
-
-    model: Any = field(default_factory=pin.Model)
-    crossing: dict[int, int] = field(default_factory=dict)
-    F: dict[int, int] = field(default_factory=dict)
-    N: dict[int, int] = field(default_factory=dict)
-    feathers: dict[int, int] = field(default_factory=dict)
-    moving: dict[int, int] = field(default_factory=dict)
-    driven: set[int] = field(default_factory=set)
-
-    def locked(self, parent: int, placement: Any, kind: Any = pin.JointModelFreeFlyer) -> int:
-        """Hang a locked joint on a joint."""
-        number: int = self.model.addJoint(parent, kind(), placement, f"locked {self.model.njoints}")
-        return number
 
 
 class WrenchModels:
@@ -121,7 +77,7 @@ class WrenchModels:
         if needed > MOST_BYTES:
             raise MemoryError(f"{needed:,} bytes of Pinocchio's data")
         threads = max(1, min(_processors(), MOST_BYTES // needed))
-        self._models = [_WrenchModel(draft, pin_model, threads) for draft in drafts]
+        self._models = [WrenchModel(draft, pin_model, threads) for draft in drafts]
 
     def wrenches(self, motion: Motion, loads: Sequence[Load]) -> Wrenches:
         """Run Pinocchio on all states of a batch; loads have a force and moment for each, in their links' axes."""
@@ -176,7 +132,7 @@ class WrenchModels:
     def _freedoms_inside(self, links: Sequence[int]) -> int:
         return self._moving(self._inside({self._body[i] for i in links})) + 6 * len(links)
 
-    def _draft_of_crossing(self, links: Sequence[int]) -> _Draft:
+    def _draft_of_crossing(self, links: Sequence[int]) -> Draft:
         """A model for f, n of these links."""
         draft, bodies = _begun(self._pin_model), {self._body[i] for i in links}
         outside = self._outside(bodies)
@@ -198,7 +154,7 @@ class WrenchModels:
         draft.driven = {self._body[i] for i in links if not self._links.fixed[i]}
         return draft
 
-    def _draft_of_net(self, links: Sequence[int]) -> _Draft:
+    def _draft_of_net(self, links: Sequence[int]) -> Draft:
         """A model for F, N of these links."""
         draft = _begun(self._pin_model)
         for body in sorted(self._inside({self._body[i] for i in links})):
@@ -219,21 +175,21 @@ class WrenchModels:
         parent = self._carried_by[link]
         return parent if parent >= 0 and self._body[parent] == self._body[link] else self._own.get(self._body[link], -1)
 
-    def _add_moving(self, draft: _Draft, body: int, parent: int) -> int:
+    def _add_moving(self, draft: Draft, body: int, parent: int) -> int:
         """One of Pinocchio's own joints, at its placement on its body."""
         joint, placement = self._pin_model.joints[body], self._pin_model.jointPlacements[body]
         number: int = draft.model.addJoint(parent, joint, placement, self._pin_model.names[body])
         draft.moving[body] = number
         return number
 
-    def _add_body(self, draft: _Draft, link: int, on: int) -> None:
+    def _add_body(self, draft: Draft, link: int, on: int) -> None:
         """What a link weighs, on a joint; nothing is rounded where it stands alone and in the joint's axes."""
         links, there = self._links, draft.model.inertias[on]
         own = _inertia(links.mass[link], links.com[link], links.inertia[link])
         own = own.se3Action(self._place(link)) if links.fixed[link] else own
         draft.model.inertias[on] = own if there.isZero(0.0) else there + own
 
-    def _add_feather(self, draft: _Draft, link: int, on: int) -> None:
+    def _add_feather(self, draft: Draft, link: int, on: int) -> None:
         at = draft.feathers[link] = draft.locked(on, self._place(link))
         draft.model.inertias[at] = pin.Inertia(FEATHER, np.zeros(3), FEATHER * np.eye(3))
 
@@ -249,8 +205,8 @@ def _inertia(mass: float, lever: Array, tensor: Array) -> Any:
     return inertia
 
 
-def _begun(pin_model: Any) -> _Draft:
-    draft = _Draft()
+def _begun(pin_model: Any) -> Draft:
+    draft = Draft()
     draft.model.gravity = pin_model.gravity
     return draft
 
@@ -269,64 +225,3 @@ def _parts(links: Sequence[int], freedoms: Callable[[Sequence[int]], int]) -> It
 
 def _processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-
-
-class _WrenchModel:
-    """A model of some part of a robot, from which some wrenches are read."""
-
-    def __init__(self, draft: _Draft, pin_model: Any, threads: int) -> None:
-        built = draft.model
-        for body in draft.driven:
-            own, here = pin_model.joints[body], built.joints[draft.moving[body]]
-            built.armature[here.idx_v : here.idx_v + here.nv] = pin_model.armature[own.idx_v : own.idx_v + own.nv]
-        self._pool, self._threads, self._neutral, self.nv = (
-            pin.ModelPool(built, threads),
-            threads,
-            pin.neutral(built),
-            built.nv,
-        )
-        self._arrays: list[Array] = [np.empty(0)]
-        pairs = [(pin_model.joints[body], built.joints[number]) for body, number in draft.moving.items()]
-        self._q = [(_q_of(here), _q_of(own)) for own, here in pairs]
-        self._v = [(_v_of(here), _v_of(own)) for own, here in pairs]
-        self._tau = [
-            (_v_of(built.joints[draft.moving[body]]), _v_of(pin_model.joints[body])) for body in sorted(draft.driven)
-        ]
-        self._feathers, self._crossing, self._F, self._N = (
-            [(link, _v_of(built.joints[number])) for link, number in x.items()]
-            for x in (draft.feathers, draft.crossing, draft.F, draft.N)
-        )
-
-    def run(self, motion: Motion, loads: Sequence[Load], result: Wrenches) -> None:
-        """Compute, and write what is read here."""
-        q, v, a, forces = self._memory(len(motion.q))
-        for here, own in self._q:
-            q[:, here] = motion.q[:, own]
-        for here, own in self._v:
-            v[:, here], a[:, here] = motion.v[:, own], motion.a[:, own]
-        for link, here in self._feathers:
-            a[:, here] = 0.0
-            for load in (load for load in loads if load.link == link):
-                a[:, here] += np.concatenate([load.f, load.n], axis=1) / FEATHER
-        pin.rneaInParallel(self._threads, self._pool, q.T, v.T, a.T, forces.T)
-        columns = np.ascontiguousarray(forces.T)
-        for here, own in self._tau:
-            result.tau[own] = columns[here]
-        read = ((self._crossing, result.crossing), (self._F, result.F), (self._N, result.N))
-        for places, target in read:
-            for link, here in places:
-                target[link] = columns[here]
-
-    def _memory(self, rows: int) -> list[Array]:
-        """q, v, a and forces of so many states; what is locked stands still in them for good."""
-        if len(self._arrays[0]) != rows:
-            self._arrays = [np.tile(self._neutral, (rows, 1)), *(np.zeros((rows, self.nv)) for _ in range(3))]
-        return self._arrays
-
-
-def _q_of(joint: Any) -> slice:
-    return slice(joint.idx_q, joint.idx_q + joint.nq)
-
-
-def _v_of(joint: Any) -> slice:
-    return slice(joint.idx_v, joint.idx_v + joint.nv)
