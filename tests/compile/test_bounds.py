@@ -23,7 +23,7 @@ from rttrr_pin.compile.expression import Graph, Node, Op
 from rttrr_pin.compile.regrouping import regroup
 from rttrr_pin.compile.trace import TRACING, TRACING_WITH_ERRORS
 from rttrr_pin.core.dynamics import bodies
-from rttrr_pin.core.scalars import UNIT_ROUNDOFF
+from rttrr_pin.core.scalars import SLACK, UNIT_ROUNDOFF
 from rttrr_pin.exact import bounded_dynamics, enclose
 from rttrr_pin.validation import Sampler
 from support.high_precision import exact_dynamics
@@ -51,7 +51,7 @@ def test_a_known_number_s_error_covers_the_truth(x, y, e, d, at, by, operation) 
     result = apply(ConstantWithError(x, e), ConstantWithError(y, d))
     left, right = Fraction(x) + Fraction(e) * Fraction(at), Fraction(y) + Fraction(d) * Fraction(by)
     truth = apply(left, right)
-    assert abs(Fraction(float(result)) - truth) <= Fraction(result.error) * Fraction(bounds.SLACK)
+    assert abs(Fraction(float(result)) - truth) <= Fraction(result.error) * Fraction(SLACK)
     assert float(result) == apply(x, y)
 
 

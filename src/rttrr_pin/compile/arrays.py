@@ -39,17 +39,18 @@ def rows_in_place(x: Array, rows: int, width: int) -> Array | None:
     return x.reshape(rows, width) if x.flags.c_contiguous else None
 
 
-def check_out(name: str, x: Any, shape: tuple[int, ...]) -> None:
+def check_out(name: str, x: Any, shape: tuple[int, ...], dtype: np.dtype[Any]) -> None:
     """Refuse what results cannot be written to.
 
     Raises:
-        InputError: it is no float64 array, or one that cannot be written.
+        InputError: it is no array of that type, or one that cannot be written.
         ShapeError: it has another shape.
     """
-    if not isinstance(x, np.ndarray) or x.dtype != np.float64 or not x.flags.aligned or not x.dtype.isnative:
+    if not isinstance(x, np.ndarray) or x.dtype != dtype or not x.flags.aligned or not x.dtype.isnative:
         description = f"array of {x.dtype}" if isinstance(x, np.ndarray) else type(x).__name__
         description = f"misaligned {description}" if isinstance(x, np.ndarray) and not x.flags.aligned else description
-        raise InputError(f"out for {name} is a {description}: expected a float64 array, such as np.empty({shape})")
+        wanted = f"np.empty({shape}{'' if dtype == np.float64 else f', np.{dtype}'})"
+        raise InputError(f"out for {name} is a {description}: expected a {dtype} array, such as {wanted}")
     if x.shape != shape:
         raise ShapeError(
             f"out for {name} has shape {x.shape}, expected {shape}: pass np.empty({shape})",

@@ -9,6 +9,7 @@ from rttrr_pin.compile.bounds import with_bounds
 from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.expression import Graph, GraphFullError
 from rttrr_pin.compile.fields import PayloadSlot, inputs_read, outputs_of
+from rttrr_pin.compile.float_type import FLOAT64, FloatType
 from rttrr_pin.compile.outlining import Outliner
 from rttrr_pin.compile.program import Program
 from rttrr_pin.compile.quantities import BOUND, QUANTITIES, STRAIGHT_LINE
@@ -35,6 +36,7 @@ def build(
     payloads: Sequence[PayloadSlot] = (),
     straight_line: int | None = STRAIGHT_LINE,
     fused: bool = False,
+    float_type: FloatType = FLOAT64,
 ) -> Program | CallProgram:
     """The program of a robot, of the kind that suits its size.
 
@@ -44,6 +46,7 @@ def build(
         payloads: where payloads act.
         straight_line: operations, as traced, beyond which it is made of calls; None for never.
         fused: whether products may be fused with sums; without, operations can be counted.
+        float_type: to compute in. Numbers of the robot are folded in float64 first, and rounded once.
 
     Returns:
         Straight lines or calls, with sums in chains.
@@ -52,29 +55,36 @@ def build(
         InputError: the robot is too large for these outputs.
     """
     if straight_line is None or not all(QUANTITIES[name].by_steps for name in outputs):
-        return straight_lines(model, outputs, payloads, fused)
+        return straight_lines(model, outputs, payloads, fused, float_type)
     try:
         program = trace(model, outputs, payloads, most=straight_line * NODES)
     except GraphFullError:
-        return call_program(model, outputs, payloads, fused=fused)
-    short = program.operations.total <= straight_line
-    return order_sums(program, fused) if short else call_program(model, outputs, payloads, fused=fused)
+        program = None
+    if program is None or program.operations.total > straight_line:
+        return call_program(model, outputs, payloads, fused=fused, float_type=float_type)
+    return replace(order_sums(program, fused), float_type=float_type)
 
 
 def straight_lines(
-    model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot] = (), fused: bool = False
+    model: Model,
+    outputs: Sequence[str],
+    payloads: Sequence[PayloadSlot] = (),
+    fused: bool = False,
+    float_type: FloatType = FLOAT64,
 ) -> Program:
     """The program in straight lines, however long; as `build`."""
     if any(name.endswith(BOUND) for name in outputs):
-        return _bounded(model, outputs, payloads, fused)
-    return order_sums(_whole(model, outputs, payloads), fused)
+        return _bounded(model, outputs, payloads, fused, float_type)
+    return replace(order_sums(_whole(model, outputs, payloads), fused), float_type=float_type)
 
 
-def _bounded(model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot], fused: bool) -> Program:
+def _bounded(
+    model: Model, outputs: Sequence[str], payloads: Sequence[PayloadSlot], fused: bool, float_type: FloatType
+) -> Program:
     """Values and bounds on their rounding."""
     plain = tuple(dict.fromkeys(name.removesuffix(BOUND) for name in outputs))
     program = _whole(model, plain, payloads, with_bounds=True)
-    chained = order_sums(program, fused)
+    chained = replace(order_sums(program, fused), float_type=float_type)
     # q comes first among the inputs, so that places in q are places among the inputs
     quaternions = model.quaternions if any(field.name == "q" for field in program.inputs) else ()
     return with_bounds(chained, outputs_of(model, outputs), quaternions, fused)
@@ -99,10 +109,12 @@ def call_program(
     payloads: Sequence[PayloadSlot] = (),
     regrouped: bool = True,
     fused: bool = False,
+    float_type: FloatType = FLOAT64,
 ) -> CallProgram:
     """A robot as calls, however large or small it is, for quantities with `by_steps`; arguments as of `trace`."""
     outliner = Outliner(Graph())
     arithmetic = replace(TRACING, call=outliner.call)
     results = record(outliner.graph, arithmetic, model, outputs, payloads, regrouped)
     plain = arranged(outliner, results, inputs_read(model, outputs, payloads), outputs_of(model, outputs))
-    return replace(plain, steps=tuple(replace(step, program=order_sums(step.program, fused)) for step in plain.steps))
+    steps = tuple(replace(step, program=order_sums(step.program, fused)) for step in plain.steps)
+    return replace(plain, steps=steps, float_type=float_type)

@@ -10,13 +10,14 @@ from math import prod
 from typing import Any
 
 import numpy as np
+from numpy.typing import DTypeLike
 
 from rttrr_pin.compile.device_arrays import Placed, looked_at, placed
 from rttrr_pin.compile.emit import cuda_text
 from rttrr_pin.compile.emit.cuda import CudaEmitter
 from rttrr_pin.compile.emit.cuda_driver import NONE, Driver, View
 from rttrr_pin.compile.fields import PayloadSlot
-from rttrr_pin.compile.float_type import FLOAT64
+from rttrr_pin.compile.float_type import float_type
 from rttrr_pin.compile.kernel import Kernel
 from rttrr_pin.compile.quantities import STRAIGHT_LINE
 from rttrr_pin.compile.variant import Variant, compiled
@@ -41,10 +42,16 @@ class DeviceKernel:
         host: the kernel of the processor for the same.
     """
 
-    def __init__(self, model: Model, outputs: str | Sequence[str], driver: Driver | None = None) -> None:
-        self.model, self.host = model, Kernel[Any](model, outputs)
+    def __init__(
+        self,
+        model: Model,
+        outputs: str | Sequence[str],
+        driver: Driver | None = None,
+        dtype: DTypeLike = "float64",
+    ) -> None:
+        self.model, self.host = model, Kernel[Any](model, outputs, dtype=dtype)
         self.outputs, self._single = self.host.outputs, isinstance(outputs, str)
-        self._float_type = FLOAT64
+        self._float_type = float_type(dtype)
         self._emitter = CudaEmitter(driver)
         self._driver = self._emitter.driver  # now, so that what is missing is said before the first call
         self._variants: dict[tuple[PayloadSlot, ...], Variant] = {}
@@ -126,7 +133,9 @@ class DeviceKernel:
 
     def _variant(self, slots: tuple[PayloadSlot, ...]) -> Variant:
         if slots not in self._variants:
-            self._variants[slots] = compiled(self.model, self.outputs, slots, STRAIGHT_LINE, self._emitter)
+            self._variants[slots] = compiled(
+                self.model, self.outputs, slots, STRAIGHT_LINE, self._emitter, self._float_type
+            )
         return self._variants[slots]
 
     def _given(self, *arrays: Any) -> list[Any]:

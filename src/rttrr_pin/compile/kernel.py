@@ -8,12 +8,13 @@ from math import prod
 from typing import TYPE_CHECKING, Any, Generic, TypeVar, cast
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import DTypeLike, NDArray
 
 from rttrr_pin.compile import emit, threads
 from rttrr_pin.compile.arrays import as_rows, check_out, readable, rows_in_place
 from rttrr_pin.compile.emit import Emitter, One, emitter
 from rttrr_pin.compile.fields import PayloadSlot, inputs_read
+from rttrr_pin.compile.float_type import float_type
 from rttrr_pin.compile.quantities import QUANTITIES, STRAIGHT_LINE
 from rttrr_pin.compile.threads import MOST as MOST_THREADS
 from rttrr_pin.compile.variant import Variant, compiled
@@ -41,6 +42,7 @@ class Kernel(Generic[Result]):
     Attributes:
         model: the robot.
         outputs: what it computes.
+        dtype: the type of all its numbers, float64 or float32.
     """
 
     def __init__(
@@ -49,6 +51,7 @@ class Kernel(Generic[Result]):
         outputs: str | Sequence[str],
         emitter_name: str | None = None,
         straight_line: int = STRAIGHT_LINE,
+        dtype: DTypeLike = "float64",
     ) -> None:
         self.model = model
         self._single = isinstance(outputs, str)
@@ -60,6 +63,8 @@ class Kernel(Generic[Result]):
             raise InputError(f"outputs is {outputs!r}: name at least one, and each once, of {', '.join(QUANTITIES)}")
         self._emitter_name, self._straight_line = emitter_name, straight_line
         self._emitter: Emitter = emitter(emitter_name)
+        self._float_type = float_type(dtype)
+        self.dtype: np.dtype[Any] = np.dtype(self._float_type.name)
         self._variants: dict[tuple[PayloadSlot, ...], Variant] = {}
         self._inputs = "".join(field.name for field in inputs_read(model, self.outputs))
         self._floats = bool(model.quaternions)
@@ -70,10 +75,11 @@ class Kernel(Generic[Result]):
 
     def __reduce__(self) -> tuple[object, ...]:
         outputs = self.outputs[0] if self._single else self.outputs
-        return type(self), (self.model, outputs, self._emitter_name, self._straight_line)
+        return type(self), (self.model, outputs, self._emitter_name, self._straight_line, self._float_type.name)
 
     def __repr__(self) -> str:
-        return f"<Kernel of {self.model.name!r}: {', '.join(self.outputs)} by {self._emitter.name}>"
+        short = f" in {self.dtype}" if self.dtype != np.float64 else ""
+        return f"<Kernel of {self.model.name!r}: {', '.join(self.outputs)}{short} by {self._emitter.name}>"
 
     @cached_property
     def program(self) -> Program:
@@ -83,14 +89,14 @@ class Kernel(Generic[Result]):
     def _straight_lines(self, fused: bool) -> Program:
         from rttrr_pin.compile.build import straight_lines
 
-        return straight_lines(self.model, self.outputs, fused=fused)
+        return straight_lines(self.model, self.outputs, fused=fused, float_type=self._float_type)
 
     def source(self, emitter: str = "c") -> str:
         """The program (without payload) as a source file, to carry the dynamics elsewhere.
 
         Args:
-            emitter: "c", for a C99 file with the function `void ROBOT_OUTPUT(const double *q, ..., double *output)`;
-                "cuda", for CUDA C++ with the kernel `ROBOT_OUTPUT`.
+            emitter: "c", for a C99 file with the function `void ROBOT_OUTPUT(const double *q, ..., double *output)`, or
+                float where that is the kernel's type; "cuda", for CUDA C++ with the kernel `ROBOT_OUTPUT`.
 
         Returns:
             The file's text; a comment on top says what goes in and out.
@@ -125,12 +131,13 @@ class Kernel(Generic[Result]):
         of the arrays nor on the threads. Memory beyond inputs and outputs does not grow with the batch.
 
         Args:
-            q: coordinates, (..., nq) [rad or m], as in `Robot.inverse_dynamics`; float32 is widened, any strides are
-                taken as they are (the transpose of a C-ordered (n, N) as well), and leading axes broadcast.
+            q: coordinates, (..., nq) [rad or m], as in `Robot.inverse_dynamics`; what is no array of the kernel's type
+                is widened or rounded to it, any strides are taken as they are (the transpose of a C-ordered (n, N) as
+                well), and leading axes broadcast.
             v: rates, (..., nv); left out where the outputs do not depend on them.
             a: accelerations, (..., nv); left out likewise.
             payload: what the robot exerts on its surroundings, a `Wrench` or several; with outputs that it enters.
-            out: where to write: a float64 array for a single output, a dict of them by name for several.
+            out: where to write: an array of the kernel's type for a single output, a dict of them by name for several.
             threads: how many; None for as many as pay.
 
         Returns:
@@ -140,7 +147,7 @@ class Kernel(Generic[Result]):
             ShapeError: an array has not one value for each coordinate, leading axes do not broadcast, or `out` has
                 another shape.
             NumberError: a value is NaN, inf, complex, ..., or so large that the result overflows.
-            InputError: an argument is missing, or too many, or `out` is no float64 array that can be written.
+            InputError: an argument is missing, or too many, or `out` is no array of the type that can be written.
         """
         # A control loop calls this with one state. Each line here costs a twentieth of the dynamics.
         # Few states go on this thread, however many are allowed.
@@ -178,7 +185,9 @@ class Kernel(Generic[Result]):
         payloads = self._loads(payload)
         variant = self._variant(tuple(PayloadSlot(load.link, load.in_base) for load in payloads))
         if isinstance(payload, Wrench) and not self._floats:
-            self._last = payload, variant.executable.one, (payloads[0].f, payloads[0].n)
+            with np.errstate(over="ignore"):  # infinite in float32, which results show
+                force, moment = (x.astype(self.dtype, copy=False) for x in (payloads[0].f, payloads[0].n))
+            self._last = payload, variant.executable.one, (force, moment)
         arrays = self._arrays(q, v, a)
         numbers = {
             f"payload {name} at link {load.link + 1}{f' ({k + 1})' if len(payloads) > 1 else ''}": x
@@ -215,10 +224,13 @@ class Kernel(Generic[Result]):
                     f"{name} {what}: {', '.join(self.outputs)} depend on {', '.join(self._inputs)}; pass these"
                 )
             if x is not None:
-                arrays[name] = x if readable(x, self._widths[name]) else coordinates(name, x, self.model.moving)
+                as_it_is = readable(x, self._widths[name])
+                arrays[name] = (
+                    x if as_it_is else coordinates(name, x, self.model.moving, self._float_type.unit_quaternion)
+                )
         if self._floats and "q" in arrays:
             q = finite("q", np.asarray(arrays["q"], dtype=np.float64), self.model.q_names)
-            check_quaternions(q, self.model.moving)
+            check_quaternions(q, self.model.moving, self._float_type.unit_quaternion)
         return arrays
 
     def _variant(self, slots: tuple[PayloadSlot, ...]) -> Variant:
@@ -227,7 +239,7 @@ class Kernel(Generic[Result]):
             with threads.COMPILING:  # one thread compiles, the others wait and find it
                 if slots not in self._variants:
                     self._variants[slots] = compiled(
-                        self.model, self.outputs, slots, self._straight_line, self._emitter
+                        self.model, self.outputs, slots, self._straight_line, self._emitter, self._float_type
                     )
                     if not slots and not self._floats:
                         self._without_payload = self._variants[slots].executable.one
@@ -247,13 +259,13 @@ class Kernel(Generic[Result]):
             shape = (*batch, *field.shape)
             own = passed.get(field.name)
             if own is not None:
-                check_out(field.name, own, shape)
+                check_out(field.name, own, shape, self.dtype)
             elsewhere = own is not None and any(np.may_share_memory(own, x) for x in inputs)
             target = None if own is None or elsewhere else rows_in_place(own, rows, field.width)
             if own is not None and target is None and not elsewhere:
                 target = own if batch else own[None]  # in parts, see `Variant.task`
             if target is None:
-                target = np.empty((rows, field.width))
+                target = np.empty((rows, field.width), self.dtype)
             for other, result in zip(self.outputs, results, strict=False):  # those before it
                 if own is not None and np.shares_memory(own, result):
                     raise InputError(

@@ -8,48 +8,80 @@ grid of q or of the first part. What the second product and the second differenc
 difference that is second - (r - t), exactly (Dekker's sum), since t is a multiple of the last place of the product.
 
 S and C are interpolated at Chebyshev nodes (`benchmarks/sincos_accuracy.py` makes and measures them: at most 1 unit in
-the last place over the whole range). From `LARGEST` on, and for what is not finite, the C library's functions serve.
+the last place over the whole range, in float32 at every number of it). From `largest` on, and for what is not finite,
+the C library's functions of float64 serve.
 """
 
 from __future__ import annotations
 
-PIO2 = (
-    float.fromhex("0x1.921fb54442d18p+0"),
-    float.fromhex("0x1.1a62633145c07p-54"),
-    float.fromhex("-0x1.f1976b7ed8fbcp-110"),
-)
-"""pi/2 as the sum of three float64."""
+from dataclasses import dataclass
+
+from rttrr_pin.compile.float_type import FloatType
+
+
+@dataclass(frozen=True, slots=True)
+class SinCos:
+    """The numbers of one type.
+
+    Attributes:
+        pio2: pi/2 as the sum of three.
+        two_over_pi: 2/pi.
+        round: x + round has the nearest integer to x in its last bits; subtracting it again gives that integer.
+        largest: up to this |q| [rad] the three parts of pi/2 suffice.
+        sine: S, lowest power first; relative error of the sine below 2^-55, of float32 2^-26.
+        cosine: C, lowest power first; relative error of the cosine below 2^-59, of float32 2^-29.
+    """
+
+    pio2: tuple[float, ...]
+    two_over_pi: float
+    round: float
+    largest: float
+    sine: tuple[float, ...]
+    cosine: tuple[float, ...]
+
+
+def _numbers(*texts: str) -> tuple[float, ...]:
+    return tuple(map(float.fromhex, texts))
+
+
+PIO2 = _numbers("0x1.921fb54442d18p+0", "0x1.1a62633145c07p-54", "-0x1.f1976b7ed8fbcp-110")
 
 TWO_OVER_PI = float.fromhex("0x1.45f306dc9c883p-1")
 
 ROUND = 1.5 * 2.0**52
-"""x + ROUND has the nearest integer to x in its last bits; subtracting ROUND again gives that integer."""
 
 LARGEST = 2.0**17
-"""Up to this |q| [rad] the three parts of pi/2 suffice."""
 
-SINE = tuple(
-    float.fromhex(x)
-    for x in (
-        "-0x1.5555555555555p-3",
-        "0x1.1111111110bb2p-7",
-        "-0x1.a01a019e83aa8p-13",
-        "0x1.71de3796898c8p-19",
-        "-0x1.ae600b022d198p-26",
-        "0x1.5e0b19c752b8ep-33",
-    )
+SINE = _numbers(
+    "-0x1.5555555555555p-3",
+    "0x1.1111111110bb2p-7",
+    "-0x1.a01a019e83aa8p-13",
+    "0x1.71de3796898c8p-19",
+    "-0x1.ae600b022d198p-26",
+    "0x1.5e0b19c752b8ep-33",
 )
-"""S, lowest power first; relative error of the sine below 2^-55."""
 
-COSINE = tuple(
-    float.fromhex(x)
-    for x in (
-        "0x1.5555555555555p-5",
-        "-0x1.6c16c16c16967p-10",
-        "0x1.a01a019f4eafdp-16",
-        "-0x1.27e4fa17d9c81p-22",
-        "0x1.1eeb68e8f6cdfp-29",
-        "-0x1.907da33638fbcp-37",
-    )
+COSINE = _numbers(
+    "0x1.5555555555555p-5",
+    "-0x1.6c16c16c16967p-10",
+    "0x1.a01a019f4eafdp-16",
+    "-0x1.27e4fa17d9c81p-22",
+    "0x1.1eeb68e8f6cdfp-29",
+    "-0x1.907da33638fbcp-37",
 )
-"""C, lowest power first; relative error of the cosine below 2^-59."""
+
+IN_FLOAT64 = SinCos(PIO2, TWO_OVER_PI, ROUND, LARGEST, SINE, COSINE)
+
+IN_FLOAT32 = SinCos(
+    _numbers("0x1.921fb6p+0", "-0x1.777a5cp-25", "-0x1.ee59dap-50"),
+    float.fromhex("0x1.45f306p-1"),
+    1.5 * 2.0**23,
+    2.0**17,
+    _numbers("-0x1.555552p-3", "0x1.110c02p-7", "-0x1.9ab47cp-13"),
+    _numbers("0x1.555554p-5", "-0x1.6c12b4p-10", "0x1.9bc79cp-16"),
+)
+
+
+def sincos_in(float_type: FloatType) -> SinCos:
+    """The numbers of a type."""
+    return IN_FLOAT64 if float_type.bits == 64 else IN_FLOAT32

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from rttrr_pin.compile import cache
 from rttrr_pin.compile.emit import Emitter, Executable
 from rttrr_pin.compile.fields import Field, PayloadSlot, Widths, inputs_read, outputs_of
+from rttrr_pin.compile.float_type import FloatType
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 
@@ -43,7 +44,7 @@ class Variant(Widths):
         def part(start: int, stop: int) -> bool:
             states = np.unravel_index(np.arange(start, stop), batch)
             sources = [x[start:stop] if x.ndim == 2 else x[states] for x in inputs]
-            results = [np.empty((stop - start, field.width)) for field in self.outputs]
+            results = [np.empty((stop - start, field.width), dtype=targets[0].dtype) for field in self.outputs]
             failed = self.executable.bind(sources, results)(0, stop - start)
             for target, result, field in zip(targets, results, self.outputs, strict=True):
                 if target.shape == (rows, field.width):
@@ -56,16 +57,21 @@ class Variant(Widths):
 
 
 def compiled(
-    model: Model, outputs: tuple[str, ...], slots: tuple[PayloadSlot, ...], straight_line: int, emitter: Emitter
+    model: Model,
+    outputs: tuple[str, ...],
+    slots: tuple[PayloadSlot, ...],
+    straight_line: int,
+    emitter: Emitter,
+    float_type: FloatType,
 ) -> Variant:
     """The program for payloads there, from disk or compiled now; arguments as of `Kernel`."""
     longest = straight_line if emitter.calls else None
-    name = cache.key(emitter.identity, fingerprint(model), repr((outputs, slots, longest)))
+    name = cache.key(emitter.identity, fingerprint(model), repr((outputs, slots, longest, float_type.name)))
     code = cache.read(name)
     if code is None:
         from rttrr_pin.compile.build import build  # the compiler, not needed for what is on disk
 
-        code = emitter.emit(build(model, outputs, slots, longest, emitter.fuses))
+        code = emitter.emit(build(model, outputs, slots, longest, emitter.fuses, float_type))
         cache.write(name, code)
     fields_in, fields_out = inputs_read(model, outputs, slots), outputs_of(model, outputs)
     return Variant(fields_in, fields_out, emitter.load(code, fields_in, fields_out))

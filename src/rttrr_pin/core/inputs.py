@@ -24,7 +24,9 @@ EXACT_INTEGER = 2**53
 """Integers beyond it have no float64 of their own."""
 
 
-def coordinates(name: str, values: Coordinates, joints: Sequence[Joint]) -> Array:
+def coordinates(
+    name: str, values: Coordinates, joints: Sequence[Joint], unit_quaternion: float = UNIT_QUATERNION
+) -> Array:
     """One of q, v, a as float64.
 
     Args:
@@ -32,6 +34,7 @@ def coordinates(name: str, values: Coordinates, joints: Sequence[Joint]) -> Arra
         values: an array (..., n), or a dict from joint name to array (...); of a joint with several coordinates
             (..., that many). Dict entries broadcast.
         joints: the joints along the last axis.
+        unit_quaternion: how far the squared length of a quaternion may be from 1.
 
     Returns:
         A float64 array (..., n).
@@ -58,7 +61,7 @@ def coordinates(name: str, values: Coordinates, joints: Sequence[Joint]) -> Arra
             )
     finite(name, array, labels)
     if name == "q":
-        check_quaternions(array, joints)
+        check_quaternions(array, joints, unit_quaternion)
     return array
 
 

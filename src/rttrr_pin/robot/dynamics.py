@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Literal, cast, overload
 
+from numpy.typing import DTypeLike, NDArray
+
 from rttrr_pin.core.arguments import names_of
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.inputs import Coordinates, coordinates, copied
@@ -120,10 +122,12 @@ class Dynamics:
         return enclose(self.model, q, v, a, loads_of(self.model, payload), parameters)
 
     @overload
-    def compile(self, outputs: Outputs, emitter: Literal["cuda"]) -> DeviceKernel: ...
+    def compile(self, outputs: Outputs, emitter: Literal["cuda"], *, dtype: DTypeLike = "float64") -> DeviceKernel: ...
 
     @overload
-    def compile(self, outputs: Outputs = "tau", *, emitter: Literal["cuda"]) -> DeviceKernel: ...
+    def compile(
+        self, outputs: Outputs = "tau", *, emitter: Literal["cuda"], dtype: DTypeLike = "float64"
+    ) -> DeviceKernel: ...
 
     @overload
     def compile(self, outputs: str = "tau", emitter: OnHost | None = None) -> Kernel[Array]: ...
@@ -134,9 +138,23 @@ class Dynamics:
     ) -> Kernel[dict[str, Array]]: ...
 
     @overload
-    def compile(self, outputs: Outputs, emitter: str | None) -> Kernel[Any] | DeviceKernel: ...
+    def compile(
+        self, outputs: str = "tau", emitter: OnHost | None = None, *, dtype: DTypeLike
+    ) -> Kernel[NDArray[Any]]: ...
 
-    def compile(self, outputs: str | Sequence[str] = "tau", emitter: str | None = None) -> Kernel[Any] | DeviceKernel:
+    @overload
+    def compile(
+        self, outputs: tuple[str, ...] | list[str], emitter: OnHost | None = None, *, dtype: DTypeLike
+    ) -> Kernel[dict[str, NDArray[Any]]]: ...
+
+    @overload
+    def compile(
+        self, outputs: Outputs, emitter: str | None, *, dtype: DTypeLike = "float64"
+    ) -> Kernel[Any] | DeviceKernel: ...
+
+    def compile(
+        self, outputs: str | Sequence[str] = "tau", emitter: str | None = None, *, dtype: DTypeLike = "float64"
+    ) -> Kernel[Any] | DeviceKernel:
         """Compile the robot's dynamics for this processor, or for a GPU.
 
         Args:
@@ -147,6 +165,9 @@ class Dynamics:
                 of them with `"_bound"` behind, a bound on its rounding. The fewer, the faster.
             emitter: `"llvm"` (machine code), `"numpy"` (wherever NumPy runs) or `"c"` (by the C compiler);
                 None for what is there. `"cuda"` for an NVIDIA GPU, whose kernel takes arrays that lie there.
+            dtype: `"float64"`, or `"float32"` for a program that computes in float32 from end to end, with twice the
+                lanes, and returns float32. Numbers of the robot are rounded to it once. Its bounds hold for the states
+                that it reads: rounding float64 arrays to float32 on the way in is not counted.
 
         Returns:
             A kernel, `kernel(q, v, a, payload=None, out=None, threads=None)`; on a GPU a `DeviceKernel`, with `stream`
@@ -154,28 +175,32 @@ class Dynamics:
 
         Raises:
             UnknownNameError: there is no such output, or no such emitter.
-            InputError: no output, or one twice; or the emitter cannot be imported, or there is no GPU.
+            InputError: no output, or one twice; the emitter cannot be imported, or there is no GPU, or no such type.
         """
         names = names_of("outputs", outputs)
         if emitter is not None and not isinstance(emitter, str):
             raise InputError(f"emitter is {emitter!r}: pass its name, such as 'llvm', or None")
-        wanted = outputs if isinstance(outputs, str) else names
-        return self._device_kernel(wanted) if emitter == "cuda" else self._kernel(wanted, emitter)
+        from rttrr_pin.compile.float_type import float_type
 
-    def _device_kernel(self, outputs: str | tuple[str, ...]) -> DeviceKernel:
-        kernel = self._device_kernels.get(outputs)
+        wanted, own = outputs if isinstance(outputs, str) else names, float_type(dtype).name
+        return self._device_kernel(wanted, own) if emitter == "cuda" else self._kernel(wanted, emitter, own)
+
+    def _device_kernel(self, outputs: str | tuple[str, ...], dtype: str) -> DeviceKernel:
+        kernel = self._device_kernels.get((outputs, dtype))
         if kernel is None:
             from rttrr_pin.compile.device import DeviceKernel
 
-            kernel = self._device_kernels[outputs] = DeviceKernel(self.model, outputs)
+            kernel = self._device_kernels[outputs, dtype] = DeviceKernel(self.model, outputs, dtype=dtype)
         return kernel
 
-    def _kernel(self, outputs: str | tuple[str, ...], emitter: str | None = None) -> Kernel[Any]:
-        kernel = self._kernels.get((outputs, emitter))
+    def _kernel(
+        self, outputs: str | tuple[str, ...], emitter: str | None = None, dtype: str = "float64"
+    ) -> Kernel[Any]:
+        kernel = self._kernels.get((outputs, emitter, dtype))
         if kernel is None:
             from rttrr_pin.compile import Kernel
 
-            kernel = self._kernels[outputs, emitter] = Kernel(self.model, outputs, emitter)
+            kernel = self._kernels[outputs, emitter, dtype] = Kernel(self.model, outputs, emitter, dtype=dtype)
         return kernel
 
     def mass_matrix(self, q: Coordinates) -> Array:

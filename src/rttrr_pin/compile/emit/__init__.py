@@ -21,16 +21,16 @@ if TYPE_CHECKING:  # what is on disk needs nothing of what compiles
     from rttrr_pin.compile.program import Program
 
 Array = NDArray[Any]
-"""float64 or float32 in, float64 out; (N, width) with any strides."""
+"""float64 or float32 in, the program's type out; (N, width) with any strides."""
 
 Task = Callable[[int, int], bool]
 """Computes the states from start to stop; tells whether a result is not finite."""
 
 
 One = Callable[..., Any]
-"""Computes one state of float64 arrays, or up to `FEW`: `one(q, v, a, force, moment, ..., *outputs)`, with None for
-what is not read and for outputs to be allocated. Returns the output, a tuple of several, or None where it declines what
-was passed, or a result is not finite."""
+"""Computes one state of arrays of the program's type, or up to `FEW`: `one(q, v, a, force, moment, ..., *outputs)`,
+with None for what is not read and for outputs to be allocated. Returns the output, a tuple of several, or None where it
+declines what was passed, or a result is not finite."""
 
 FEW = 4096
 """States that `Executable.one` computes in one call; more are worth threads, and must not hold up Ctrl-C."""
@@ -45,7 +45,7 @@ class Executable(Protocol):
 
     one: One | None
 
-    def bind(self, inputs: Sequence[Array], outputs: Sequence[NDArray[np.float64]]) -> Task:
+    def bind(self, inputs: Sequence[Array], outputs: Sequence[Array]) -> Task:
         """The task of computing these outputs from these inputs; it may run in several threads at once."""
         ...
 

@@ -19,12 +19,12 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rttrr_pin.compile.emit import Array, Task
 from rttrr_pin.compile.emit.c_text import Dialect, comment, function_name, operations
 from rttrr_pin.compile.expression import Op
 from rttrr_pin.compile.fields import Field
+from rttrr_pin.compile.float_type import FLOAT32
 from rttrr_pin.compile.program import Program
 from rttrr_pin.errors import InputError
 
@@ -42,19 +42,31 @@ def number(x: float) -> str:
     return "NAN" if math.isnan(x) else "INFINITY" if x > 0 else "-INFINITY"
 
 
-FORM = {
-    Op.ADD: "{0} + {1}",
-    Op.SUB: "{0} - {1}",
-    Op.MUL: "{0} * {1}",
-    Op.NEG: "-{0}",
-    Op.SIN: "sin({0})",
-    Op.COS: "cos({0})",
-    Op.SIGN: "{0} > 0.0 ? 1.0 : {0} < 0.0 ? -1.0 : {0}",
-    Op.ABS: "fabs({0})",
-}
-"""Each operation in C; the sign of NaN is NaN."""
+def _single(x: float) -> str:
+    """The float32 nearest to a number, likewise."""
+    nearest = FLOAT32.rounded(x)
+    return f"{np.float32(nearest)}f" if math.isfinite(nearest) else number(nearest)
 
-DIALECT = Dialect("double", FORM, number)
+
+def _form(f: str) -> dict[Op, str]:
+    """Each operation in C, with the suffix of functions and numbers; the sign of NaN is NaN."""
+    return {
+        Op.ADD: "{0} + {1}",
+        Op.SUB: "{0} - {1}",
+        Op.MUL: "{0} * {1}",
+        Op.NEG: "-{0}",
+        Op.SIN: f"sin{f}({{0}})",
+        Op.COS: f"cos{f}({{0}})",
+        Op.SIGN: f"{{0}} > 0.0{f} ? 1.0{f} : {{0}} < 0.0{f} ? -1.0{f} : {{0}}",
+        Op.ABS: f"fabs{f}({{0}})",
+    }
+
+
+DIALECTS = {
+    "float64": Dialect("double", _form(""), number),
+    "float32": Dialect("float", _form("f"), _single),
+}
+"""How operations are written, by the type of the numbers."""
 
 NAME = "program"
 """Of the function, where none is asked for."""
@@ -74,8 +86,8 @@ class CEmitter:
     fuses = False
 
     def emit(self, program: Program) -> bytes:
-        """C source of the function alone."""
-        return _text(program, NAME, ()).encode()
+        """C source of the function, and of a loop over states with it."""
+        return (_text(program, NAME, ()) + _loop(program)).encode()
 
     def source(self, program: Program, robot: str, labels: Mapping[str, Sequence[str]]) -> str:
         """C source for readers.
@@ -92,27 +104,30 @@ class CEmitter:
         return _text(program, name, comment(program, robot, labels, _signature(program, name), REMARKS))
 
     def load(self, code: bytes, inputs: Sequence[Field], outputs: Sequence[Field]) -> CExecutable:
-        """Compile the source, and a loop over states with it, into this process.
+        """Compile the source into this process.
 
         Raises:
             InputError: there is no C compiler, or it fails.
         """
-        return CExecutable(_compiled(code.decode() + _loop(inputs, outputs)))
+        return CExecutable(_compiled(code.decode()))
 
 
 def _text(program: Program, name: str, head: Iterable[str]) -> str:
-    body = (f"    {line}" for line in operations(program, DIALECT, lambda field, k: f"{field.name}[{k}]"))
+    dialect = DIALECTS[program.float_type.name]
+    body = (f"    {line}" for line in operations(program, dialect, lambda field, k: f"{field.name}[{k}]"))
     return "\n".join([*head, "#include <math.h>", "", f"{_signature(program, name)} {{", *body, "}", ""])
 
 
 def _signature(program: Program, name: str) -> str:
-    arguments = [f"const double *{field.name}" for field in program.inputs]
-    return f"void {name}({', '.join([*arguments, *(f'double *{field.name}' for field in program.outputs)])})"
+    own = program.float_type.c_name
+    arguments = [f"const {own} *{field.name}" for field in program.inputs]
+    return f"void {name}({', '.join([*arguments, *(f'{own} *{field.name}' for field in program.outputs)])})"
 
 
-def _loop(inputs: Sequence[Field], outputs: Sequence[Field]) -> str:
+def _loop(program: Program) -> str:
     """What follows the function here: a loop over states whose numbers stand one behind the other."""
-    fields = [("const double", field) for field in inputs] + [("double", field) for field in outputs]
+    own = program.float_type.c_name
+    fields = [(f"const {own}", field) for field in program.inputs] + [(own, field) for field in program.outputs]
     declared = ", ".join(f"{type_name} *x{k}" for k, (type_name, _) in enumerate(fields))
     arguments = ", ".join(f"x{k} + i * {field.width}" for k, (_, field) in enumerate(fields))
     return f"void run(long states, {declared}) {{\n    for (long i = 0; i < states; ++i) {NAME}({arguments});\n}}\n"
@@ -155,12 +170,13 @@ class CExecutable:
         self._run = library.run
         self._run.restype = None
 
-    def bind(self, inputs: Sequence[Array], outputs: Sequence[NDArray[np.float64]]) -> Task:
+    def bind(self, inputs: Sequence[Array], outputs: Sequence[Array]) -> Task:
         """The states of a task as arrays without gaps, whatever the strides and types of these are."""
 
         def task(start: int, stop: int) -> bool:
-            taken = [np.ascontiguousarray(x[start:stop], dtype=np.float64) for x in inputs]
-            written = [np.empty((stop - start, x.shape[1])) for x in outputs]
+            with np.errstate(over="ignore"):
+                taken = [np.ascontiguousarray(x[start:stop], dtype=outputs[0].dtype) for x in inputs]
+            written = [np.empty((stop - start, x.shape[1]), dtype=x.dtype) for x in outputs]
             pointers = [ctypes.c_void_p(x.ctypes.data) for x in (*taken, *written)]
             self._run(ctypes.c_long(stop - start), *pointers)
             for out, result in zip(outputs, written, strict=True):

@@ -15,8 +15,6 @@ from typing import TYPE_CHECKING
 
 import llvmlite
 import llvmlite.binding as llvm
-import numpy as np
-from numpy.typing import NDArray
 
 from rttrr_pin.compile.emit import Array, One, Task, task
 from rttrr_pin.compile.threads import COMPILING
@@ -155,7 +153,7 @@ class LlvmExecutable:
             with COMPILING:
                 self._engine.close()
 
-    def bind(self, inputs: Sequence[Array], outputs: Sequence[NDArray[np.float64]]) -> Task:
+    def bind(self, inputs: Sequence[Array], outputs: Sequence[Array]) -> Task:
         """See `task`."""
         return task(self._run, self, (*inputs, *outputs))
 

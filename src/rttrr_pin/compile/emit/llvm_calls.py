@@ -20,6 +20,8 @@ from rttrr_pin.compile.expression import LEAVES
 END = 2**32 - 1
 """In the place of a step, behind the last call."""
 
+FORMAT = {64: "d", 32: "f"}
+"""Of numbers of so many bits, for `struct`."""
 
 FILL = "define void @fill(ptr %out, i64 %m) {\n  ret void\n}\n"
 """What no state changes is written by calls, as all else is."""
@@ -38,9 +40,9 @@ def _tables(call_program: CallProgram, layout: Layout) -> Iterator[str]:
         for call in call_program.calls
         for x in (call.step, *(column * layout.pitch for column in (*call.columns, *call.results)))
     ]
-    numbers = [x for call in call_program.calls for x in call.numbers]
+    numbers = [layout.float_type.rounded(x) for call in call_program.calls for x in call.numbers]
     yield _constant("rows", struct.pack(f"<{len(rows) + 1}I", *rows, END))
-    yield _constant("numbers", struct.pack(f"<{len(numbers)}d", *numbers))
+    yield _constant("numbers", struct.pack(f"<{len(numbers)}{FORMAT[layout.float_type.bits]}", *numbers))
 
 
 def _constant(name: str, data: bytes) -> str:
@@ -59,7 +61,7 @@ class _StepCode(VectorCode):
         assert self.step is not None
         lines, v, scalar = self.lines, self.lines.vector, self.lines.float_type.c_name
         if index in self.step.columns:
-            return lines(f"load {v}, ptr {self.address(self.step.columns.index(index))}, align 8")
+            return lines(f"load {v}, ptr {self.address(self.step.columns.index(index))}, align {lines.float_type.size}")
         x = lines(f"load {scalar}, ptr {lines.at('%numbers', self.step.numbers.index(index))}")
         first = lines(f"insertelement {v} poison, {scalar} {x}, i32 0")
         return lines(f"shufflevector {v} {first}, {v} poison, <{lines.lanes} x i32> zeroinitializer")
@@ -81,7 +83,7 @@ def _step(step: Step, layout: Layout, k: int) -> str:
     # A result may be an argument that is handed on: `get` loads it here, before a store can overwrite its column.
     values = [code.get(x) for x in program.results]
     for entry, value in enumerate(values, len(step.columns)):
-        lines.do(f"store {lines.vector} {value}, ptr {code.address(entry)}, align 8")
+        lines.do(f"store {lines.vector} {value}, ptr {code.address(entry)}, align {lines.float_type.size}")
     lines.text.insert(0, f"  %q = getelementptr {lines.float_type.c_name}, ptr %in, i64 %i")
     return loop(f"step_{k}", "ptr %in, ptr %row, ptr %numbers", lines, code.label)
 

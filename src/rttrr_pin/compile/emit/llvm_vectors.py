@@ -12,7 +12,7 @@ from dataclasses import dataclass, field
 from rttrr_pin.compile.expression import FUSED, Op
 from rttrr_pin.compile.float_type import FLOAT64, FloatType
 from rttrr_pin.compile.program import Program
-from rttrr_pin.compile.sincos import COSINE, LARGEST, PIO2, ROUND, SINE, TWO_OVER_PI
+from rttrr_pin.compile.sincos import sincos_in
 
 FAR = 2.0**-500
 """Below it, and above its inverse, squares may leave the normal numbers of float64."""
@@ -24,7 +24,7 @@ BINARY = {Op.ADD: "fadd", Op.SUB: "fsub", Op.MUL: "fmul"}
 
 
 def literal(x: float) -> str:
-    """A number as LLVM writes it: the bits of a float64, for shorter types too."""
+    """A number as LLVM writes it: its bits as a float64, also of a float32."""
     return f"0x{struct.unpack('<Q', struct.pack('<d', x))[0]:016X}"
 
 
@@ -54,7 +54,8 @@ class Lines:
 
     def splat(self, x: float) -> str:
         """A constant in every lane."""
-        return f"<{', '.join([f'{self.float_type.c_name} {literal(x)}'] * self.lanes)}>"
+        number = f"{self.float_type.c_name} {literal(self.float_type.rounded(x))}"
+        return f"<{', '.join([number] * self.lanes)}>"
 
     def whole(self, x: int) -> str:
         """An integer in every lane."""
@@ -228,7 +229,8 @@ class VectorCode:
         lines = self.lines
         s, c = polynomials(lines, q)
         size = lines(f"call {lines.vector} @llvm.fabs.{lines.suffix}({lines.vector} {q})")
-        beyond = lines(f"fcmp ugt {lines.vector} {size}, {lines.splat(LARGEST)}")  # also NaN
+        largest = lines.splat(sincos_in(lines.float_type).largest)
+        beyond = lines(f"fcmp ugt {lines.vector} {size}, {largest}")  # also NaN
         some = lines(f"bitcast <{lines.lanes} x i1> {beyond} to i{lines.lanes}")
         any_ = lines(f"icmp ne i{lines.lanes} {some}, 0")
         # The polynomials are computed in any case; the calls are skipped where no lane needs them, as for the angles of
@@ -248,12 +250,14 @@ class VectorCode:
 
     def _library(self, q: str, beyond: str, old: str, name: str) -> str:
         """The C library's function in the lanes that lie beyond."""
-        lines, v = self.lines, self.lines.vector
+        lines, v, own = self.lines, self.lines.vector, self.lines.float_type.c_name
         new = old
         for lane in range(lines.lanes):
             x = lines(f"extractelement {v} {q}, i32 {lane}")
+            x = x if own == "double" else lines(f"fpext {own} {x} to double")
             y = lines(f"call double @{name}(double {x})")
-            new = lines(f"insertelement {v} {new}, double {y}, i32 {lane}")
+            y = y if own == "double" else lines(f"fptrunc double {y} to {own}")
+            new = lines(f"insertelement {v} {new}, {own} {y}, i32 {lane}")
         return lines(f"select <{lines.lanes} x i1> {beyond}, {v} {new}, {v} {old}")
 
 
@@ -276,32 +280,32 @@ def _norm(lines: Lines, parts: list[str]) -> str:
 
 
 def polynomials(lines: Lines, q: str) -> tuple[str, str]:
-    """Sine and cosine for |q| up to LARGEST; see `rttrr_pin.compile.sincos`."""
-    splat, fma, op, bits = lines.splat, lines.fma, lines.op, lines.bits
-    # Adding 1.5 2^52 rounds to an integer, whose last bits then are the quadrant: no conversion, and no branch.
-    shifted = fma(q, splat(TWO_OVER_PI), splat(ROUND))
-    k = op("fsub", splat(ROUND), shifted)  # minus the multiple of pi/2
-    t = fma(k, splat(PIO2[0]), q)
-    second = op("fmul", k, splat(PIO2[1]))
+    """Sine and cosine for |q| up to `largest`; see `rttrr_pin.compile.sincos`."""
+    splat, fma, op, bits, numbers = lines.splat, lines.fma, lines.op, lines.bits, sincos_in(lines.float_type)
+    # Adding `round` rounds to an integer, whose last bits then are the quadrant: no conversion, and no branch.
+    shifted = fma(q, splat(numbers.two_over_pi), splat(numbers.round))
+    k = op("fsub", splat(numbers.round), shifted)  # minus the multiple of pi/2
+    t = fma(k, splat(numbers.pio2[0]), q)
+    second = op("fmul", k, splat(numbers.pio2[1]))
     r = op("fadd", t, second)
     lost = op("fsub", second, op("fsub", r, t))
-    rest = fma(k, splat(PIO2[2]), fma(k, splat(PIO2[1]), lines.negated(second)))
+    rest = fma(k, splat(numbers.pio2[2]), fma(k, splat(numbers.pio2[1]), lines.negated(second)))
     low = op("fadd", lost, rest)
     z = op("fmul", r, r)
-    sine, cosine = (_horner(lines, z, terms) for terms in (SINE, COSINE))
+    sine, cosine = (_horner(lines, z, terms) for terms in (numbers.sine, numbers.cosine))
     s = op("fadd", r, fma(op("fmul", r, z), sine, low))
     half = op("fmul", z, splat(0.5))
     w = op("fsub", splat(1.0), half)
     over = op("fsub", op("fsub", splat(1.0), w), half)
     tail = fma(op("fmul", z, z), cosine, over)
     c = op("fadd", w, fma(lines.negated(r), low, tail))
+    top = lines.whole(lines.float_type.bits - 1)
     quadrant = lines(f"bitcast {lines.vector} {shifted} to {lines.integers}")
-    odd = lines(f"icmp slt {lines.integers} {bits('shl', quadrant, lines.whole(63))}, {lines.whole(0)}")
+    odd = lines(f"icmp slt {lines.integers} {bits('shl', quadrant, top)}, {lines.whole(0)}")
     mask, v = f"<{lines.lanes} x i1>", lines.vector
     # Odd quadrants exchange sine and cosine; the second bit of k, of k + 1 for the cosine, is the sign.
     flips = [
-        bits("shl", bits("lshr", n, lines.whole(1)), lines.whole(63))
-        for n in (quadrant, bits("add", quadrant, lines.whole(1)))
+        bits("shl", bits("lshr", n, lines.whole(1)), top) for n in (quadrant, bits("add", quadrant, lines.whole(1)))
     ]
     pair = (f"{v} {c}, {v} {s}", f"{v} {s}, {v} {c}")
     chosen = [lines(f"select {mask} {odd}, {both}") for both in pair]

@@ -12,6 +12,7 @@ from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.emit import Array, Task
 from rttrr_pin.compile.expression import LEAVES, Op
 from rttrr_pin.compile.fields import Field
+from rttrr_pin.compile.float_type import FloatType
 from rttrr_pin.compile.program import Program
 from rttrr_pin.core.arrays import norm
 
@@ -31,7 +32,7 @@ FORM = {
 }
 """Each operation in Python."""
 
-Columns = list[NDArray[np.float64]]
+Columns = list[NDArray[Any]]
 
 
 class NumpyEmitter:
@@ -44,7 +45,8 @@ class NumpyEmitter:
 
     def emit(self, program: Program | CallProgram) -> bytes:
         """Python source of a function from columns of inputs to columns of outputs."""
-        lines = _of_calls(program) if isinstance(program, CallProgram) else _straight("program", program)
+        own = program.float_type
+        lines = _of_calls(program) if isinstance(program, CallProgram) else _straight("program", program, own)
         return "\n".join(lines).encode()
 
     def load(self, code: bytes, inputs: Sequence[Field], outputs: Sequence[Field]) -> NumpyExecutable:
@@ -56,6 +58,8 @@ class NumpyEmitter:
             "norm": _norm,
             "inf": np.inf,
             "nan": np.nan,
+            "float64": float,
+            "float32": np.float32,
         }
         exec(compile(code, "<program>", "exec"), space)
         return NumpyExecutable(space["program"])
@@ -65,13 +69,13 @@ def _norm(*parts: Any) -> NDArray[np.float64]:
     return norm(np.stack(np.broadcast_arrays(*parts), axis=-1))
 
 
-def _straight(function: str, program: Program) -> Iterator[str]:
-    """A function of a program's operations."""
+def _straight(function: str, program: Program, float_type: FloatType) -> Iterator[str]:
+    """A function of a program's operations; numbers of Python's beside arrays take the type of these."""
     op, args, value = program.graph.op, program.graph.args, program.graph.value
 
     def name(x: int) -> str:
         if op[x] is Op.CONSTANT:
-            return repr(value[x])
+            return repr(float_type.rounded(value[x]))
         return f"x[{args[x][0]}]" if op[x] is Op.INPUT else f"t{x}"
 
     computed = [x for x in program.order if op[x] not in LEAVES]
@@ -91,7 +95,7 @@ def _straight(function: str, program: Program) -> Iterator[str]:
 def _of_calls(call_program: CallProgram) -> Iterator[str]:
     """A function for each step, the calls as data, and a function that goes through them."""
     for k, step in enumerate(call_program.steps):
-        yield from _straight(f"step_{k}", step.program)
+        yield from _straight(f"step_{k}", step.program, call_program.float_type)
     layouts = [(step.columns, step.numbers) for step in call_program.steps]
     first, last = call_program.width_in, call_program.width_in + call_program.width_out
     yield f"steps = [{', '.join(f'step_{k}' for k in range(len(layouts)))}]"
@@ -100,7 +104,7 @@ def _of_calls(call_program: CallProgram) -> Iterator[str]:
     yield "def program(x):"
     yield f"    memory = x + [None] * {call_program.columns - first}"
     yield "    for k, columns, numbers, results in calls:"
-    yield "        inputs = dict(zip(layouts[k][1], numbers))"
+    yield f"        inputs = dict(zip(layouts[k][1], map({call_program.float_type.name}, numbers)))"
     yield "        inputs.update((place, memory[column]) for place, column in zip(layouts[k][0], columns))"
     yield "        for column, result in zip(results, steps[k](inputs)):"
     yield "            memory[column] = result"
@@ -115,15 +119,15 @@ class NumpyExecutable:
     def __init__(self, program: Callable[[Columns], Columns]) -> None:
         self._program = program
 
-    def bind(self, inputs: Sequence[Array], outputs: Sequence[NDArray[np.float64]]) -> Task:
+    def bind(self, inputs: Sequence[Array], outputs: Sequence[Array]) -> Task:
         """Blocks of the arrays, one after the other."""
 
         def task(start: int, stop: int) -> bool:
             unsound = False
             for first in range(start, stop, BLOCK):
                 part = slice(first, min(first + BLOCK, stop))
-                columns = [np.array(column, dtype=np.float64) for x in inputs for column in x[part].T]
                 with np.errstate(over="ignore", invalid="ignore"):
+                    columns = [np.array(column, dtype=outputs[0].dtype) for x in inputs for column in x[part].T]
                     results = iter(self._program(columns))
                     unsound |= not all(np.isfinite(column).all() for column in columns)
                 for out in outputs:
