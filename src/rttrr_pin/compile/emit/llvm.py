@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import platform
 import sys
 from collections.abc import Sequence
 from functools import cache
@@ -25,6 +26,10 @@ if TYPE_CHECKING:
     from rttrr_pin.compile.program import Program
 
 OPTIMISATION = 2
+
+CODE_MODEL = "small" if sys.platform == "linux" and platform.machine() == "x86_64" else "jitdefault"
+"""Code and its constants lie in one piece of memory, so that constants are operands of instructions; where that is not
+tried out, each is found through a register of its own."""
 
 CPU, CPU_FEATURES = "RTTRR_PIN_CPU", "RTTRR_PIN_CPU_FEATURES"
 """Variables of the environment that choose another processor than the one at hand, by LLVM's names."""
@@ -69,7 +74,7 @@ class LlvmEmitter:
     def _machine(self) -> llvm.TargetMachine:
         target = llvm.Target.from_default_triple()
         return target.create_target_machine(
-            cpu=self.processor, features=self.features, opt=OPTIMISATION, jit=True, reloc="pic", codemodel="jitdefault"
+            cpu=self.processor, features=self.features, opt=OPTIMISATION, jit=True, reloc="pic", codemodel=CODE_MODEL
         )
 
     def emit(self, program: Program | CallProgram) -> bytes:
@@ -84,7 +89,8 @@ class LlvmEmitter:
     def load(self, code: bytes, inputs: Sequence[Field], outputs: Sequence[Field]) -> LlvmExecutable:
         """Link object code into this process."""
         link_numpy()
-        engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), self._machine())
+        one_piece = True if CODE_MODEL == "small" else None  # by llvmlite's own manager of memory
+        engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), self._machine(), use_lmm=one_piece)
         engine.add_object_file(llvm.ObjectFileRef.from_data(code))
         engine.finalize_object()
         return LlvmExecutable(engine)

@@ -25,9 +25,28 @@ def body(program: Program, layout: Layout) -> tuple[str, int]:
     passed = _passed(program, parts)
     texts = [_segment(program, layout, k, part, passed) for k, part in enumerate(parts)]
     arguments = "ptr %in, ptr %out, ptr %between, i64 %m"
-    calls = "\n".join(f"  call void @segment_{k}({arguments})" for k in range(len(parts)))
-    whole = f"define void @body({arguments}) noinline {{\n{calls}\n  ret void\n}}\n"
+    whole = _by_vectors(layout, len(parts)) if layout.short else _by_segments(arguments, len(parts))
     return "\n".join([*declarations(layout), *texts, whole, *_fill(program, layout)]), len(passed)
+
+
+def is_short(program: Program) -> bool:
+    """Whether all operations together stay in the instruction cache."""
+    return len(_segments(program)) == 1
+
+
+def _by_segments(arguments: str, count: int) -> str:
+    """All states of a block go through a segment before the next: each is a loop."""
+    calls = "\n".join(f"  call void @segment_{k}({arguments})" for k in range(count))
+    return f"define void @body({arguments}) noinline {{\n{calls}\n  ret void\n}}\n"
+
+
+def _by_vectors(layout: Layout, count: int) -> str:
+    """A vector of states goes through all segments before the next."""
+    lines = layout.lines()
+    lines.text += _at_states(layout)
+    for k in range(count):
+        lines.do(f"call void @segment_{k}(ptr %q, ptr %o, ptr %b, i64 %m)")
+    return loop("body", "ptr %in, ptr %out, ptr %between", lines, "loop").replace("define internal", "define")
 
 
 def _fill(program: Program, layout: Layout) -> Iterator[str]:
@@ -40,7 +59,7 @@ def _fill(program: Program, layout: Layout) -> Iterator[str]:
         for column, x in part:
             value = lines.splat(graph.value[x])
             lines.do(f"store {lines.vector} {value}, ptr {lines.at('%o', column * layout.pitch)}")
-        yield _loop(f"fill_{k}", lines, "loop")
+        yield _loop(f"fill_{k}", layout, lines, "loop")
     calls = "\n".join(f"  call void @fill_{k}(ptr %out, ptr %out, ptr %out, i64 %m)" for k in range(len(parts)))
     yield f"define void @fill(ptr %out, i64 %m) noinline {{\n{calls}\n  ret void\n}}\n"
 
@@ -95,10 +114,20 @@ def _segment(program: Program, layout: Layout, k: int, part: list[int], passed: 
     for column, x in results:
         if x in inside or (first and program.graph.op[x] is Op.INPUT):
             lines.do(f"store {lines.vector} {writer.get(x)}, ptr {lines.at('%o', column * layout.pitch)}")
-    return _loop(f"segment_{k}", lines, writer.label)
+    if not layout.short:
+        return _loop(f"segment_{k}", layout, lines, writer.label)
+    text = "\n".join(lines.text)
+    arguments = "ptr noalias %q, ptr noalias %o, ptr noalias %b, i64 %m"
+    return f"define internal void @segment_{k}({arguments}) noinline {{\nloop:\n{text}\n  ret void\n}}\n"
 
 
-def _loop(name: str, lines: Lines, last: str) -> str:
-    """A function that does the lines for m states; %q, %o and %b are where these have their columns."""
-    lines.text[:0] = [f"  %{at} = getelementptr {lines.float_type.c_name}, ptr %{base}, i64 %i" for at, base in COLUMNS]
+def _at_states(layout: Layout) -> list[str]:
+    """%q, %o and %b are where the states from %i on have their columns."""
+    scalar = layout.float_type.c_name
+    return [f"  %{at} = getelementptr {scalar}, ptr %{base}, i64 %i" for at, base in COLUMNS]
+
+
+def _loop(name: str, layout: Layout, lines: Lines, last: str) -> str:
+    """A function that does the lines for m states."""
+    lines.text[:0] = _at_states(layout)
     return loop(name, "ptr noalias %in, ptr noalias %out, ptr noalias %between", lines, last)

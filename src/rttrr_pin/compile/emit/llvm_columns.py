@@ -6,11 +6,11 @@ registers. Arrays that lie in columns are copied by vectors. All else goes numbe
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from llvmlite import ir
 
-from rttrr_pin.compile.emit.llvm_vectors import Layout
+from rttrr_pin.compile.emit.llvm_vectors import LINE, Layout
 from rttrr_pin.compile.emit.llvm_writer import I1, I32, I64, PTR, SCALAR, Writer, function, number
 
 VOID = ir.VoidType()
@@ -21,8 +21,15 @@ UNROLLED, GROUP = 32, 16
 TOGETHER = 4
 """Vectors of a column that are copied in a turn of a loop."""
 
+AHEAD = 32
+"""States between the one that is moved and the one that is fetched into the cache."""
+
 SUMS = 4
 """In which what is not finite is looked for: one would wait for itself."""
+
+
+Record = tuple[ir.Value, ir.Value, ir.Value, ir.Value]
+"""Of an array, loaded; see `rttrr_pin.compile.emit.RECORD`."""
 
 
 class Columns:
@@ -113,8 +120,7 @@ def unpack(module: ir.Module, layout: Layout, width: int) -> ir.Function:
                 w.store(sound.seen(columns.get(j, i)), w.offset(y, b.mul(i, size)), columns.size)
         with in_rows, b.if_else(b.icmp_signed("==", column, size)) as (side_by_side, apart):
             with side_by_side, w.loop(full, W) as i:
-                first = w.offset(target, b.mul(i, row))
-                rows_out(columns, width, [w.offset(first, b.mul(number(k), row)) for k in range(W)], i, sound)
+                rows_out(columns, width, _rows(w, target, row, i, W), i, sound)
             with apart:
                 w.store(number(0), done)
     single = Sound(w, columns.scalar)
@@ -126,16 +132,79 @@ def unpack(module: ir.Module, layout: Layout, width: int) -> ir.Function:
     return routine
 
 
-def unsound(module: ir.Module, layout: Layout) -> ir.Function:
-    """Whether a number among m states of a column is not finite."""
-    routine, w = function(module, "unsound", I1, [PTR, I64])
-    source, m = routine.args
-    columns = Columns(w, layout, source)
-    sound = Sound(w, columns.vector)
-    with w.loop(m, layout.lanes) as i:
-        sound.seen(columns.get(number(0), i))
-    w.builder.ret(w.builder.not_(sound.all()))
-    return routine
+def block_in(columns: Columns, array: Record, width: int, block: int, otherwise: Callable[[], object]) -> None:
+    """Gather a whole block in line where rows or columns are whole in memory; `otherwise` writes what does all else."""
+    w, b = columns.w, columns.w.builder
+    base, row, column, single = array
+    done = b.append_basic_block("gathered")
+    for bits in sorted(SCALAR, key=lambda bits: bits != 8 * columns.size):
+        size = bits // 8
+        same = b.icmp_signed("==", single, number(int(bits == 32)))
+        with b.if_then(b.and_(same, b.icmp_signed("==", column, number(size)))):
+            with w.loop(number(block), columns.lanes) as i:
+                rows = _rows(w, base, row, i, columns.lanes)
+                _ahead(w, rows, row, AHEAD, width * size)
+                rows_in(columns, bits, width, rows, i)
+            b.branch(done)
+        with b.if_then(b.and_(same, b.icmp_signed("==", row, number(size)))):
+            for j in _each(w, width):
+                x = w.offset(base, b.mul(j, column))
+                w.prefetch(w.offset(x, size * AHEAD))
+                for i in range(0, block, columns.lanes):
+                    columns.put(w.load(_vector(bits, columns.lanes), w.offset(x, i * size), size), j, number(i))
+            b.branch(done)
+    otherwise()
+    b.branch(done)
+    b.position_at_end(done)
+
+
+def block_out(
+    columns: Columns, array: Record, width: int, block: int, sound: Sound, otherwise: Callable[[], object]
+) -> None:
+    """Scatter it likewise."""
+    w, b, size = columns.w, columns.w.builder, columns.size
+    base, row, column, _ = array
+    done = b.append_basic_block("scattered")
+    with b.if_then(b.icmp_signed("==", column, number(size))):
+        with w.loop(number(block), columns.lanes) as i:
+            rows = _rows(w, base, row, i, columns.lanes)
+            _ahead(w, rows, row, AHEAD, width * size, write=True)
+            rows_out(columns, width, rows, i, sound)
+        b.branch(done)
+    with b.if_then(b.icmp_signed("==", row, number(size))):
+        for j in _each(w, width):
+            x = w.offset(base, b.mul(j, column))
+            w.prefetch(w.offset(x, size * AHEAD), write=True)
+            for i in range(0, block, columns.lanes):
+                w.store(sound.seen(columns.get(j, number(i))), w.offset(x, i * size), size)
+        b.branch(done)
+    otherwise()
+    b.branch(done)
+    b.position_at_end(done)
+
+
+def _rows(w: Writer, base: ir.Value, row: ir.Value, state: ir.Value, lanes: int) -> list[ir.Value]:
+    """LANES rows from a state on."""
+    b = w.builder
+    first = w.offset(base, b.mul(state, row))
+    return [w.offset(first, b.mul(number(k), row)) for k in range(lanes)]
+
+
+def _ahead(w: Writer, rows: Sequence[ir.Value], row: ir.Value, states: int, size: int, write: bool = False) -> None:
+    """Fetch the rows, of so many bytes, that are so many states ahead."""
+    further = w.builder.mul(row, number(states))
+    for x in rows:
+        for line in range(0, size, LINE):
+            w.prefetch(w.offset(w.offset(x, further), line), write)
+
+
+def _each(w: Writer, width: int) -> Iterator[ir.Value]:
+    """All columns, one behind the other where they are few."""
+    if width <= UNROLLED:
+        yield from map(number, range(width))
+    else:
+        with w.loop(number(width)) as j:
+            yield j
 
 
 class Sound:

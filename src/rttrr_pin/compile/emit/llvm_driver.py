@@ -13,15 +13,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from functools import partial
 
 from llvmlite import ir
 
 from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.emit import RECORD
-from rttrr_pin.compile.emit.llvm_columns import pack, unpack, unsound
+from rttrr_pin.compile.emit.llvm_columns import Columns, Record, Sound, block_in, block_out, pack, unpack
 from rttrr_pin.compile.emit.llvm_python import python_entry
-from rttrr_pin.compile.emit.llvm_vectors import Layout
-from rttrr_pin.compile.emit.llvm_writer import I1, I64, LINE, PTR, SCALAR, function, number
+from rttrr_pin.compile.emit.llvm_vectors import LINE, Layout
+from rttrr_pin.compile.emit.llvm_writer import I1, I64, PTR, SCALAR, function, number
 from rttrr_pin.compile.fields import Field
 from rttrr_pin.compile.program import Program
 
@@ -29,9 +30,6 @@ VOID = ir.VoidType()
 
 STACK = 128 * 1024
 """Bytes of a block that may lie on the stack, of which threads have little; larger ones are allocated."""
-
-Array = tuple[ir.Value, ir.Value, ir.Value, ir.Value]
-"""A record, loaded."""
 
 
 def driver(program: Program | CallProgram, layout: Layout, between: int) -> str:
@@ -55,8 +53,10 @@ class _Driver:
         widths_in, widths_out = ({field.width for field in fields} for fields in (program.inputs, program.outputs))
         self.pack = {(bits, width): pack(module, layout, bits, width) for bits in SCALAR for width in sorted(widths_in)}
         self.unpack = {width: unpack(module, layout, width) for width in sorted(widths_out)}
-        self.unsound = unsound(module, layout)
         self.function, self.w = function(module, "run", I64, [PTR, I64, I64], internal=False)
+        self.sound = Sound(self.w, ir.VectorType(SCALAR[layout.float_type.bits], layout.lanes))
+        self.bad = self.w.memory(I1)
+        self.w.store(ir.Constant(I1, 0), self.bad)
 
     def run(self) -> ir.Function:
         """Compute the states from start to stop, block by block."""
@@ -67,15 +67,21 @@ class _Driver:
             [w.load(I64, w.offset(records, 8 * (RECORD * k + entry))) for entry in range(RECORD)] for k in range(count)
         ]
         without = b.append_basic_block("without_memory")
-        bad = w.memory(I64)
-        w.store(number(0), bad)
+
+        def arrays(first: ir.Value) -> list[Record]:
+            """From a state on."""
+            return [(w.offset(b.inttoptr(at, PTR), b.mul(first, row)), row, *rest) for at, row, *rest in loaded]
+
         with self._scratch(without) as columns:
             b.call(self.fill, [columns[1], self._padded(w.least(block, b.sub(stop, start)))])
+            if self.layout.short:
+                whole = b.add(start, b.and_(b.sub(stop, start), number(-self.layout.block)))
+                with w.loop(whole, self.layout.block, start) as first:
+                    self._block(arrays(first), block, columns, in_line=True)
+                start = whole
             with w.loop(stop, self.layout.block, start) as first:
-                m = w.least(block, b.sub(stop, first))
-                arrays = [(w.offset(b.inttoptr(at, PTR), b.mul(first, row)), row, *rest) for at, row, *rest in loaded]
-                w.store(b.or_(w.load(I64, bad), b.zext(self._block(arrays, m, columns), I64)), bad)
-        b.ret(w.load(I64, bad))
+                self._block(arrays(first), w.least(block, b.sub(stop, first)), columns)
+        b.ret(b.zext(b.or_(w.load(I1, self.bad), b.not_(self.sound.all())), I64))
         b.position_at_end(without)
         b.ret(number(-1))
         return self.function
@@ -97,26 +103,41 @@ class _Driver:
         if allocated is not None:
             b.call(self.free, [allocated])
 
-    def _block(self, arrays: Sequence[Array], m: ir.Value, columns: Sequence[ir.Value]) -> ir.Value:
-        """Gather m states, run the body, scatter the results; returns whether a result is not finite."""
-        b, program, (inputs, outputs, between) = self.w.builder, self.program, columns
-        count = len(program.inputs)
-        for (base, row, column, single), field, at in self._placed(arrays[:count], program.inputs, inputs):
-            arguments = [base, row, column, at, m]
-            with b.if_else(b.icmp_signed("!=", single, number(0))) as (float32, float64):
-                with float32:
-                    b.call(self.pack[32, field.width], arguments)
-                with float64:
-                    b.call(self.pack[64, field.width], arguments)
-        padded = self._padded(m)
+    def _block(self, arrays: Sequence[Record], m: ir.Value, columns: Sequence[ir.Value], in_line: bool = False) -> None:
+        """Gather m states, run the body, scatter the results; in line for a whole block of a short program."""
+        w, b, program, layout = self.w, self.w.builder, self.program, self.layout
+        count, padded = len(program.inputs), self._padded(m)
+        for array, field, at in self._placed(arrays[:count], program.inputs, columns[0]):
+            pack = partial(self._pack, array, field, at, m)
+            if in_line:
+                block_in(Columns(w, layout, at), array, field.width, layout.block, pack)
+            else:
+                pack()
         # All is read before the first result is written: outputs may lie over inputs of the same block.
-        b.call(self.body, [inputs, outputs, between, padded])
-        bad: ir.Value = ir.Constant(I1, 0)
+        b.call(self.body, [*columns, padded])
+        inputs = Columns(w, layout, columns[0])
         for index in program.unread:  # NaN there would reach no result, and is an error all the same
-            bad = b.or_(bad, b.call(self.unsound, [self.w.offset(inputs, index * self.column), padded]))
-        for (base, row, column, _), field, at in self._placed(arrays[count:], program.outputs, outputs):
-            bad = b.or_(bad, b.call(self.unpack[field.width], [base, row, column, at, m]))
-        return bad
+            with w.loop(padded, layout.lanes) as i:
+                self.sound.seen(inputs.get(number(index), i))
+        for array, field, at in self._placed(arrays[count:], program.outputs, columns[1]):
+            unpack = partial(self._unpack, array, field, at, m)
+            if in_line:
+                block_out(Columns(w, layout, at), array, field.width, layout.block, self.sound, unpack)
+            else:
+                unpack()
+
+    def _pack(self, array: Record, field: Field, at: ir.Value, m: ir.Value) -> None:
+        b, (base, row, column, single) = self.w.builder, array
+        with b.if_else(b.icmp_signed("!=", single, number(0))) as (float32, float64):
+            with float32:
+                b.call(self.pack[32, field.width], [base, row, column, at, m])
+            with float64:
+                b.call(self.pack[64, field.width], [base, row, column, at, m])
+
+    def _unpack(self, array: Record, field: Field, at: ir.Value, m: ir.Value) -> None:
+        w, b, (base, row, column, _) = self.w, self.w.builder, array
+        bad = b.call(self.unpack[field.width], [base, row, column, at, m])
+        w.store(b.or_(w.load(I1, self.bad), bad), self.bad)
 
     def _padded(self, m: ir.Value) -> ir.Value:
         """So many states that vectors are full."""
@@ -124,8 +145,8 @@ class _Driver:
         return b.and_(b.add(m, number(self.layout.lanes - 1)), number(-self.layout.lanes))
 
     def _placed(
-        self, arrays: Sequence[Array], fields: Sequence[Field], base: ir.Value
-    ) -> Iterator[tuple[Array, Field, ir.Value]]:
+        self, arrays: Sequence[Record], fields: Sequence[Field], base: ir.Value
+    ) -> Iterator[tuple[Record, Field, ir.Value]]:
         """Each array with the address of its columns."""
         before = 0
         for array, field in zip(arrays, fields, strict=True):

@@ -10,10 +10,10 @@ import llvmlite.binding as llvm
 from llvmlite.binding.newpassmanagers import NewPassManager
 
 from rttrr_pin.compile.call_program import CallProgram
-from rttrr_pin.compile.emit.llvm_body import body
+from rttrr_pin.compile.emit.llvm_body import body, is_short
 from rttrr_pin.compile.emit.llvm_calls import calls
 from rttrr_pin.compile.emit.llvm_driver import driver
-from rttrr_pin.compile.emit.llvm_vectors import Layout
+from rttrr_pin.compile.emit.llvm_vectors import LINE, Layout
 from rttrr_pin.compile.program import Program
 
 BLOCK = 64
@@ -50,6 +50,9 @@ def module(
 
 def _layout(program: Program | CallProgram, lanes: int) -> Layout:
     """How blocks of this program lie in memory: as many states as keep its columns in the nearest cache."""
+    if isinstance(program, Program) and is_short(program):
+        line = max(lanes, LINE // program.float_type.size)
+        return Layout(lanes, line, line, program.float_type)
     if isinstance(program, CallProgram):
         room, width = SECOND_LEVEL, program.columns
     else:

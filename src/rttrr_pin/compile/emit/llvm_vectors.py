@@ -20,6 +20,9 @@ FAR = 2.0**-500
 SHRINK = 2.0**-600
 """What vectors of large numbers are multiplied by before they are squared; those of small ones are divided by it."""
 
+LINE = 64
+"""Bytes in a line of the cache."""
+
 BINARY = {Op.ADD: "fadd", Op.SUB: "fsub", Op.MUL: "fmul"}
 
 
@@ -117,6 +120,11 @@ class Layout:
     block: int
     pitch: int
     float_type: FloatType = FLOAT64
+
+    @property
+    def short(self) -> bool:
+        """Whether a column of a block is one line of the cache: then all is done for a vector before the next."""
+        return self.block * self.float_type.size <= LINE
 
     def lines(self) -> Lines:
         """For a function on its columns."""

@@ -8,11 +8,10 @@ from dataclasses import dataclass
 
 from llvmlite import ir
 
+from rttrr_pin.compile.emit.llvm_vectors import LINE
+
 I64, F64, F32, PTR, I1 = ir.IntType(64), ir.DoubleType(), ir.FloatType(), ir.PointerType(), ir.IntType(1)
 I32 = ir.IntType(32)
-
-LINE = 64
-"""Bytes in a line of the cache."""
 
 SCALAR = {64: F64, 32: F32}
 """The type of numbers of so many bits."""
@@ -47,6 +46,13 @@ class Writer:
     def store(self, value: ir.Value, address: ir.Value, align: int | None = None) -> None:
         """Write to an address."""
         self.builder.store(value, address, align=align)
+
+    def prefetch(self, address: ir.Value, write: bool = False) -> None:
+        """Fetch a line into the first level of the cache, if there is one at this address."""
+        module, arguments = self.builder.module, [PTR, I32, I32, I32]
+        name = "llvm.prefetch.p0"
+        fetch = module.globals.get(name) or ir.Function(module, ir.FunctionType(ir.VoidType(), arguments), name)
+        self.builder.call(fetch, [address, *(ir.Constant(I32, x) for x in (int(write), 3, 1))])
 
     @contextmanager
     def loop(self, stop: ir.Value, step: int = 1, start: ir.Value | None = None) -> Iterator[ir.Value]:
