@@ -30,5 +30,19 @@ def test_what_is_not_finite_stays_so(bad: float) -> None:
     assert not np.isfinite(lengths[0]) and lengths[1] == 5.0
 
 
+@pytest.mark.parametrize("width", [1, 2, 3, 7, 8, 15, 17, 127, 130, 300])
+@pytest.mark.parametrize("scale", [1.0, 1e-170, 1e200, 1e-310, 0.0])
+def test_a_vector_has_its_bits_in_any_array_and_layout(width: int, scale: float) -> None:
+    """Zeros, and numbers of many sizes, are among them."""
+    rng = np.random.default_rng(width)
+    vectors = rng.normal(size=(9, 2, width)) * scale
+    vectors[3], vectors[5, 0] = 0.0, 10.0 ** rng.integers(-300, 300, size=width)
+    alone = [[norm(vector) for vector in pair] for pair in vectors]
+    columns = np.moveaxis(np.ascontiguousarray(np.moveaxis(vectors, 0, -1)), -1, 0)
+    components = np.moveaxis(np.ascontiguousarray(np.moveaxis(vectors, -1, 0)), 0, -1)
+    for layout in (vectors, columns, components, np.asfortranarray(vectors)):
+        np.testing.assert_array_equal(norm(layout), alone)
+
+
 def test_of_no_numbers_it_is_zero() -> None:
     assert norm(np.zeros((4, 0))).tolist() == [0.0] * 4

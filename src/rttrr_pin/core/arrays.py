@@ -14,17 +14,63 @@ Array: TypeAlias = NDArray[np.float64]
 """An array of float64."""
 
 
-def norm(vectors: Array) -> Array:
-    """The Euclidean norm of the last axis.
+SMALL, LARGE = 2.0**-800, 2.0**800
+"""Between them a square has not overflowed, nor lost a bit."""
 
-    Each vector is divided by a power of two before its numbers are squared: no square of a number that float64 holds
-    overflows or vanishes, and the bits are those of the plain formula. A norm that itself is too large is infinite.
+SCALE = 2.0**600
+"""Takes every number whose square is small, or large by its inverse, to one whose square is between them."""
+
+
+def norm(vectors: Array) -> Array:
+    """The Euclidean norm of the last axis; a vector has the same bits alone and in an array of any layout.
+
+    No square of a number that float64 holds overflows or vanishes: vectors whose squares would are multiplied by a
+    power of two, which gives the bits of the plain formula. A norm that itself is too large is infinite.
     """
-    size = np.abs(vectors).max(axis=-1, initial=0.0)
-    exponent = np.frexp(np.where(np.isfinite(size), size, 0.0))[1]
-    scaled = np.ldexp(vectors, -exponent[..., None])
-    with np.errstate(over="ignore"):
-        return np.ldexp(np.sqrt(np.add.reduce(scaled * scaled, axis=-1)), exponent)
+    with np.errstate(over="ignore", invalid="ignore"):
+        squares = vectors * vectors
+        total = _sum(squares)
+        plain: Array = np.sqrt(total)
+        if not total.size or (
+            total.max() <= LARGE and (total.min() >= SMALL or ((squares < SMALL) == (vectors == 0.0)).all())
+        ):
+            return plain
+        up, down = vectors * SCALE, vectors / SCALE
+        small, large = np.sqrt(_sum(up * up)) / SCALE, np.sqrt(_sum(down * down)) * SCALE
+        return np.where(total < SMALL, small, np.where(total <= LARGE, plain, large))[()]
+
+
+def _sum(terms: Array) -> Array:
+    """The sum of the last axis."""
+    total: Array
+    if terms.ndim == 1:
+        total = np.add.reduce(terms)
+    elif terms.shape[-1] == 3:  # nearly all are
+        total = terms[..., 0] + terms[..., 1]
+        total += terms[..., 2]
+    else:
+        total = _added(np.moveaxis(terms, -1, 0))
+    return total
+
+
+def _added(terms: Array) -> Array:
+    """The sum of the first axis by columns, which run through memory, in the order that NumPy has for one of them.
+
+    That is eight sums side by side, and halves of what is longer than 128; NumPy itself has another order for each
+    layout.
+    """
+    n = len(terms)
+    if n < 8:
+        return sum(terms[1:], start=terms[0]) if n else np.zeros(terms.shape[1:])
+    if n > 128:
+        half = n // 2 - n // 2 % 8
+        return _added(terms[:half]) + _added(terms[half:])
+    rest = n - n % 8
+    side = sum((terms[k : k + 8] for k in range(8, rest, 8)), start=terms[:8])
+    pairs = side[0::2] + side[1::2]
+    quarters = pairs[0::2] + pairs[1::2]
+    total: Array = sum(terms[rest:], start=quarters[0] + quarters[1])
+    return total
 
 
 def product(matrix: Array, vectors: Array) -> Array:

@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
+from itertools import accumulate
 from typing import Any
 
 import numpy as np
@@ -36,9 +37,19 @@ class Worst:
         """Take in the values of consecutive states; the earliest of equals stays."""
         if len(values):
             k = int(np.argmax(values))
-            if values[k] > self.value or self.state < 0:
-                self.value, self.state = float(values[k]), first + k
+            self.take(float(values[k]), first + k)
 
+    def take(self, value: float, state: int) -> None:
+        """Take in the value of one state."""
+        if value > self.value or self.state < 0:
+            self.value, self.state = value, state
+
+
+SLACK = 1e-9
+"""Relative: more than rounding makes of the quotients that say which others are worth computing."""
+
+LOST = 2.0**-900
+"""Below it a limit, or what is compared with it, may have lost bits that count."""
 
 ADJUDICATED = 10
 """Failing states that the exact reference decides, the worst."""
@@ -105,7 +116,7 @@ class Row:
 
 @dataclass(frozen=True, slots=True)
 class Difference:
-    """One quantity at one link over consecutive states, (N,) each.
+    """How far apart two results are in consecutive states, by place: (rows, N) each, or (N,) at one place.
 
     Attributes:
         error: |subject - reference|.
@@ -132,6 +143,21 @@ class Difference:
         """Error / tolerance; 0 where they are equal."""
         return ratio(self.error, self.tolerance)
 
+    @property
+    def known_relative(self) -> Array:
+        """The relative error in eps where it means anything; elsewhere 0."""
+        relative = self.relative
+        np.copyto(relative, 0.0, where=~self.known)
+        return relative
+
+    def at(self, rows: Any) -> Difference:
+        """That of some rows, or of one."""
+        return Difference(self.error[rows], self.size[rows], self.tolerance[rows])
+
+    def __iter__(self) -> Iterator[Difference]:
+        """Row by row."""
+        return map(self.at, range(len(self.error)))
+
 
 class Comparison:
     """What is seen of one reference: the worst over any number of states, in memory that does not grow with them.
@@ -155,6 +181,9 @@ class Comparison:
         self._carriers = carriers(model)
         self.zero = {row.quantity for row in self.rows}
         self.seen = set[str]()
+        counts = [sum(row.quantity == key for row in self.rows) for key in self.quantities]
+        ends = zip(self.quantities, accumulate(counts), counts, strict=True)
+        self._places = {key: slice(end - count, end) for key, end, count in ends}
 
     @property
     def passed(self) -> bool:
@@ -178,50 +207,96 @@ class Comparison:
 
     def add(self, batch: Batch, subject: Evaluation, reference: Evaluation) -> Array:
         """Take in the results of consecutive states; return the largest error / tolerance of each state, (N,)."""
-        first, ratios = batch.first, np.zeros(len(batch))
-        tolerances: dict[str, list[Array]] = {quantity: [] for quantity in self.whole}
-        for row, difference in zip(self.rows, self.differences(batch, subject, reference), strict=True):
-            of_tolerance = difference.of_tolerance
-            row.absolute.see(difference.error, first)
-            row.relative.see(np.where(difference.known, difference.relative, 0.0), first)
-            row.of_tolerance.see(of_tolerance, first)
-            row.failures += int((of_tolerance > 1.0).sum())
-            np.maximum(ratios, of_tolerance, out=ratios)
-            tolerances[row.quantity].append(difference.tolerance)
-        for quantity, worst in self.whole.items():
-            x, y = (side.values[quantity].reshape(len(batch), -1) for side in (subject, reference))
-            whole = Difference(
-                _finite_or(norm(x - y), np.inf),
-                norm(y),
-                norm(np.reshape(tolerances[quantity], (-1, len(batch))).T),
-            )
-            worst.see(np.where(whole.known, whole.relative, 0.0), first)
+        difference = self.differences(batch, subject, reference)
+        of_tolerance = difference.of_tolerance
+        _see([row.absolute for row in self.rows], difference.error, batch.first)
+        _see([row.of_tolerance for row in self.rows], of_tolerance, batch.first)
+        ratios: Array = of_tolerance.max(axis=0)
+        if ratios.max() > 1.0:
+            for row, failures in zip(self.rows, np.count_nonzero(of_tolerance > 1.0, axis=1).tolist(), strict=True):
+                row.failures += failures
+        self._see_relative(difference, batch.first)
+        for key, places in self._places.items():
+            x, y = (side.values[key].reshape(len(batch), -1) for side in (subject, reference))
+            _see_whole(self.whole[key], x, y, difference.at(places), batch.first, sizes_are_of_y=key != "tau")
         return ratios
 
-    def differences(self, batch: Batch, subject: Evaluation, reference: Evaluation) -> Iterator[Difference]:
+    def _see_relative(self, difference: Difference, first: int) -> None:
+        """Quotients are computed of the rows in which one may be larger than the largest so far."""
+        worst = [row.relative for row in self.rows]
+        limit = np.array([[_at_most(own, first)] for own in worst]) * difference.size
+        rows = np.flatnonzero((difference.error > _trusted(limit)).any(axis=1))
+        if len(rows):
+            _see([worst[k] for k in rows], difference.at(rows).known_relative, first)
+
+    def differences(self, batch: Batch, subject: Evaluation, reference: Evaluation) -> Difference:
         """The difference of each row, in the order of `rows`."""
+        lengths = {key: norm(y) for key, y in reference.values.items() if key != "tau"}
         allowance, other = (_allowance(batch, side) for side in (subject, reference))
+        parts = []
         for key in self.quantities:
             x, y = subject.values[key], reference.values[key]
-            if x.any() or y.any():
+            if key not in self.seen and (x.any() or y.any()):
                 self.zero.discard(key)
                 self.seen.add(key)
             errors = np.abs(x - y) if key == "tau" else norm(x - y)
-            lengths = self._sizes_of_tau(batch, subject, reference) if key == "tau" else norm(y)
+            sizes = self._sizes_of_tau(batch, subject, reference, lengths) if key == "tau" else lengths[key]
             # A result that is not finite is as far off as can be: an infinite error, of a size that excuses nothing.
-            errors, lengths = _finite_or(errors, np.inf), _finite_or(lengths, 0.0)
-            for columns in zip(errors.T, lengths.T, (allowance[key] + other[key]).T, strict=True):
-                yield Difference(*columns)
+            parts.append((_finite_or(errors, np.inf), _finite_or(sizes, 0.0), allowance[key] + other[key]))
+        return Difference(*(np.concatenate([x.T for x in of_all]) for of_all in zip(*parts, strict=True)))
 
-    def _sizes_of_tau(self, batch: Batch, subject: Evaluation, reference: Evaluation) -> Array:
-        """The norms of the vectors that driving forces are components of, (N, nv)."""
-        sides = [side for side in (reference, subject) if "f" in side.values and "n" in side.values]
-        vectors = sides[0].values if sides else dict(batch.recursion[0].items())
+    def _sizes_of_tau(
+        self, batch: Batch, subject: Evaluation, reference: Evaluation, lengths: Mapping[str, Array]
+    ) -> Array:
+        """The norms of the vectors that driving forces are components of, (N, nv); of the reference where it has them.
+
+        `lengths` are those of the reference's vectors.
+        """
+        if not {"f", "n"} <= lengths.keys():
+            own = subject.values if {"f", "n"} <= subject.values.keys() else dict(batch.recursion[0].items())
+            lengths = {key: norm(own[key]) for key in "fn"}
         joints = [side.tau_joint for side in (reference, subject) if side.tau_joint is not None]
         sizes: Array = np.abs(joints[0] if joints else batch.recursion[0].tau_joint)
         for column, parts in enumerate(self._carriers):
-            sizes[:, column] += sum(weight * norm(vectors[key][:, link]) for weight, key, link in parts)
+            sizes[:, column] += sum(weight * lengths[key][:, link] for weight, key, link in parts)
         return sizes
+
+
+def _see(worst: Sequence[Worst], rows: Array, first: int) -> None:
+    """Take in the values of consecutive states, (rows, N)."""
+    states = rows.argmax(axis=1)
+    values = rows[np.arange(len(rows)), states]
+    for own, value, state in zip(worst, values.tolist(), states.tolist(), strict=True):
+        own.take(value, first + state)
+
+
+def _at_most(worst: Worst, first: int) -> float:
+    """What error / size is more than where the relative error may be larger than the largest so far."""
+    worst.take(0.0, first)
+    return worst.value * EPS * (1 - SLACK)
+
+
+def _trusted(limits: Array) -> Array:
+    """The limits that have neither overflowed nor lost a bit; 0 for the others."""
+    return np.where((limits > LOST) & (limits < np.inf), limits, 0.0)
+
+
+def _see_whole(worst: Worst, x: Array, y: Array, rows: Difference, first: int, sizes_are_of_y: bool) -> None:
+    """Take in the relative errors of consecutive states in the norm over all places; x and y are (N, numbers).
+
+    Squares of the norms at each place say in which states it may be larger than the largest so far.
+    """
+    sides = rows.error, rows.size if sizes_are_of_y else y.T
+    error, size = (np.einsum("ij,ij->j", side, side) for side in sides)
+    limit = np.square(_at_most(worst, first)) * size
+    states = np.flatnonzero(error >= _trusted(limit))
+    states = states[rows.error[:, states].any(axis=0)]
+    if len(states):
+        x, y = x[states], y[states]
+        whole = Difference(_finite_or(norm(x - y), np.inf), norm(y), norm(rows.tolerance[:, states].T))
+        values = whole.known_relative
+        k = int(np.argmax(values))
+        worst.take(float(values[k]), first + int(states[k]))
 
 
 def farthest_of(rows: Iterable[Row]) -> Row:
@@ -242,14 +317,18 @@ def _allowance(batch: Batch, evaluation: Evaluation) -> Mapping[str, Array]:
 
 def _finite_or(values: Array, otherwise: float) -> Array:
     """The values, and something else for what is not finite."""
-    return np.where(np.isfinite(values), values, otherwise)
+    finite = np.isfinite(values)
+    return values if finite.all() else np.where(finite, values, otherwise)
 
 
 def ratio(part: Array, whole: Array) -> Array:
     """The quotient part / whole; 0 where part is 0, inf where only whole is."""
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-        quotient = np.where(part == 0.0, 0.0, part / whole)
-    return np.where(np.isnan(quotient), np.inf, quotient)
+        quotient = part / whole
+    if quotient.size and np.isnan(quotient.max()):
+        unknown = np.isnan(quotient)
+        quotient[unknown] = np.where(part[unknown] == 0.0, 0.0, np.inf)
+    return quotient
 
 
 def labels(model: Model) -> Iterator[tuple[str, str, str]]:

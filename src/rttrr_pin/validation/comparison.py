@@ -128,11 +128,11 @@ class Run:
         self.ranking.see(np.max(ratios, axis=0), batch.first)
 
     @QUIET
-    def differences(self, batch: Batch, results: Sequence[Evaluation]) -> list[list[Difference]]:
-        """How far the subject is from each reference, row by row."""
+    def differences(self, batch: Batch, results: Sequence[Evaluation]) -> list[Difference]:
+        """How far the subject is from each reference."""
         subject, *others = results
         pairs = zip(self.comparisons, others, strict=True)
-        return [list(comparison.differences(batch, subject, other)) for comparison, other in pairs]
+        return [comparison.differences(batch, subject, other) for comparison, other in pairs]
 
     def adjudicate(self, batch: Batch, results: Sequence[Evaluation]) -> Adjudication:
         """Who is right in one state, by the exact reference."""
@@ -199,8 +199,8 @@ def _check_inertia(model: Model, states: States) -> None:
 def check_bounds(batch: Batch, program: Implementation, result: Evaluation) -> None:
     """Where no bound on the rounding is finite there is no verdict; a result that alone is not finite is an error."""
     for key, allowed in (result.allowance or {}).items():
-        beyond = ~np.isfinite(allowed).reshape(len(allowed), -1).all(axis=1)
-        if beyond.any():
+        if not np.isfinite(allowed).all():
+            beyond = ~np.isfinite(allowed).reshape(len(allowed), -1).all(axis=1)
             raise InputError(
                 f"{key} overflows in state {batch.first + int(np.argmax(beyond))}: float64 holds no bound on the "
                 f"rounding of {program.name} there; pass gravity, payload, masses and states that a robot can have"

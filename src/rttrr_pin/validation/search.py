@@ -111,7 +111,7 @@ def search_worst_state(
     def ratios(batch: Batch) -> Array:
         """Error / tolerance, (rows, N)."""
         differences = run.differences(batch, run.evaluate(batch))
-        return np.array([one.of_tolerance for of_reference in differences for one in of_reference])
+        return np.concatenate([of_reference.of_tolerance for of_reference in differences])
 
     def closeness(columns: Array) -> Array:
         """What is minimised: minus the largest error / tolerance of each state."""
