@@ -164,15 +164,12 @@ class Pinocchio:
 
     def _across_joints(self, wrenches: Wrenches, loads: Sequence[Load]) -> tuple[Array, Array]:
         """f, n at the links' origins, in their axes, from what crosses their joints."""
-        links, fixed = self.links, self.links.fixed
-        out = wrenches.crossing
-        if fixed.any():
-            out = out.copy()
-            behind = np.moveaxis(out[fixed], -1, 0)
-            out[fixed] = np.moveaxis(links.at(fixed).from_joint(behind), 0, -1)
-            for load in loads:
-                if fixed[load.link]:
-                    out[load.link] += np.concatenate([load.f, load.n], axis=1).T
+        fixed, out = self.links.fixed, wrenches.crossing
+        for i in np.flatnonzero(fixed).tolist():
+            out[i] = self.links.from_joint(i, out[i])
+        for load in loads:
+            if fixed[load.link]:
+                out[load.link] += np.concatenate([load.f, load.n], axis=1).T
         return np.moveaxis(out[:, :3], -1, 0), np.moveaxis(out[:, 3:], -1, 0)
 
 

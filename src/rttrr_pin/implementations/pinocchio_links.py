@@ -59,12 +59,12 @@ class PinLinks(NamedTuple):
         f, n = product(self.R, f), product(self.R, n)
         return np.concatenate([f, n + np.cross(self.p, f)], axis=-1)
 
-    def from_joint(self, force: Array) -> Array:
-        """Spatial forces at the joints' origins, (N, ..., 6), at the links'."""
-        f, n = force[..., :3], force[..., 3:]
-        n = n - np.cross(self.p, f)
-        R_T = np.swapaxes(self.R, -1, -2)
-        return np.concatenate([product(R_T, f), product(R_T, n)], axis=-1)
+    def from_joint(self, link: int, force: Array) -> Array:
+        """A spatial force at the joint's origin, (6, N), at the link's."""
+        R, (x, y, z), (f_x, f_y, f_z), n = self.R[link], self.p[link], force[:3], force[3:]
+        about_link = n[0] - (y * f_z - z * f_y), n[1] - (z * f_x - x * f_z), n[2] - (x * f_y - y * f_x)
+        parts = ((R[0, k] * u[0] + R[1, k] * u[1] + R[2, k] * u[2] for k in range(3)) for u in (force, about_link))
+        return np.stack([x for part in parts for x in part])
 
 
 def carriers(model: Model, links: PinLinks) -> list[int]:

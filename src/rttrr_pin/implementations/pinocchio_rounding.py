@@ -106,8 +106,8 @@ class Rounding:
         rows, bounds = len(batch), batch.bounds
         arrays = {"q": batch.q, "v": batch.v, "a": batch.a, "tau_joint": tau_joint}
         for key in LINK_QUANTITIES:
-            arrays[f"value_{key}"] = _finite(values[key]).reshape(rows, -1)
-            arrays[f"bound_{key}"] = getattr(bounds, key).reshape(rows, -1)
+            arrays[f"value_{key}"] = _flat(_finite(values[key]))
+            arrays[f"bound_{key}"] = _flat(getattr(bounds, key))
         for k, load in enumerate(batch.loads):
             arrays |= {f"load_{k}_f": np.atleast_2d(load.f), f"load_{k}_n": np.atleast_2d(load.n)}
         return {key: x.T for key, x in self._formula(rows, arrays).items()}
@@ -300,6 +300,12 @@ def _is_oblique(joint: Any) -> bool:
     """Whether a joint turns about an axis that is none of x, y, z: -z is one."""
     kind = joint.shortname()
     return "Revolute" in kind and "Unaligned" in kind
+
+
+def _flat(vectors: Array) -> Array:
+    """(N, links, 3) as (N, numbers), of the same memory where each number of consecutive states lies side by side."""
+    columns = np.moveaxis(vectors, 0, -1)
+    return columns.reshape(-1, len(vectors)).T if columns.flags.c_contiguous else vectors.reshape(len(vectors), -1)
 
 
 def _finite(values: Array) -> Array:
