@@ -12,6 +12,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from rttrr_pin.core.arguments import whole_number
+from rttrr_pin.core.processors import processors
 
 if TYPE_CHECKING:
     from concurrent.futures import Future, ThreadPoolExecutor
@@ -45,8 +46,7 @@ def count(threads: int | None, numbers: int) -> int:
     """
     if threads is not None:
         return whole_number("threads", threads, 1, MOST)
-    processors = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
-    return max(1, min(processors, numbers // WORTH_A_THREAD))
+    return max(1, min(processors(), numbers // WORTH_A_THREAD))
 
 
 def run(task: Callable[[int, int], bool], rows: int, threads: int) -> bool:

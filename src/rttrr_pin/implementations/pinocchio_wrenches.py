@@ -21,7 +21,6 @@ part of the tree that they depend on: f, n on what is further out and on the joi
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
@@ -31,6 +30,7 @@ import pinocchio as pin
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
+from rttrr_pin.core.processors import processors
 from rttrr_pin.implementations.library import Motion
 from rttrr_pin.implementations.pinocchio_links import PinLinks
 from rttrr_pin.implementations.pinocchio_parallel import FEATHER, Draft, Wrenches, WrenchModel
@@ -76,7 +76,7 @@ class WrenchModels:
         needed = max(1, sum(data_bytes(draft.model.nv) for draft in drafts))
         if needed > MOST_BYTES:
             raise MemoryError(f"{needed:,} bytes of Pinocchio's data")
-        threads = max(1, min(_processors(), MOST_BYTES // needed))
+        threads = max(1, min(processors(), MOST_BYTES // needed))
         self._models = [WrenchModel(draft, pin_model, threads) for draft in drafts]
 
     def wrenches(self, motion: Motion, loads: Sequence[Load]) -> Wrenches:
@@ -221,7 +221,3 @@ def _parts(links: Sequence[int], freedoms: Callable[[Sequence[int]], int]) -> It
         part.append(link)
     if part:
         yield part
-
-
-def _processors() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

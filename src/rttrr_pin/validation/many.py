@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, Literal, get_args
 
 from rttrr_pin.core.arguments import whole_number
+from rttrr_pin.core.processors import processors, use_at_most
 from rttrr_pin.errors import LoadWarning, ModelMismatchError, RttrrError, UnknownNameError
 from rttrr_pin.implementations import names
 from rttrr_pin.loading import load
@@ -143,13 +144,13 @@ def _run(jobs: Sequence[Job], workers: int) -> Iterator[tuple[int, Entry]]:
     try:
         for _ in range(workers):
             with held_back():
-                pool.append(_Worker())
+                pool.append(_Worker(workers))
         while waiting or any(worker.busy for worker in pool):
             for slot, worker in enumerate(pool):
                 if not worker.busy and waiting:
                     if not worker.process.is_alive():
                         with held_back():
-                            pool[slot] = _Worker()
+                            pool[slot] = _Worker(workers)
                     pool[slot].give(*waiting.popleft())
             lines = {worker.line: worker for worker in pool if worker.busy}
             for line in connection.wait([*lines]):
@@ -168,9 +169,9 @@ class _Worker:
     It is spawned: a forked one would inherit the locks of threads that are not there.
     """
 
-    def __init__(self) -> None:
+    def __init__(self, workers: int) -> None:
         self.line, child_end = context.Pipe()
-        self.process = context.Process(target=_serve, args=(child_end,), daemon=True)
+        self.process = context.Process(target=_serve, args=(child_end, max(1, processors() // workers)), daemon=True)
         self._job: tuple[int, Job] | None = None
         # Ctrl-C reaches all processes of a terminal. This one answers; its workers inherit that they do not, which the
         # tracker of multiprocessing would undo if it started only now.
@@ -207,8 +208,9 @@ class _Worker:
             return number, Entry(name, base, "unusable", defect=f"the process that ran it {how}{memory}")
 
 
-def _serve(line: Connection) -> None:
-    """A worker: jobs in, outcomes out, as long as there is somebody at the other end."""
+def _serve(line: Connection, share: int) -> None:
+    """A worker: jobs in, outcomes out, as long as there is somebody at the other end, on its share of processors."""
+    use_at_most(share)
     threading.Thread(target=_end_with_the_parent, daemon=True).start()
     with suppress(EOFError, OSError):
         while True:
