@@ -114,6 +114,19 @@ def test_the_layout_does_not_change_a_bit(kernel: Kernel, layout: str, rows: int
     np.testing.assert_array_equal(kernel(state[0], other[1], state[2]), expected)
 
 
+@pytest.mark.parametrize("dtype", [np.float64, np.float32])
+@pytest.mark.parametrize("layout", ["fortran", "reversed-both", "every-other-column", "inside-nan", "read-only"])
+def test_few_states_in_any_strides_are_computed_at_once(rttrr: Robot, layout: str, dtype: type) -> None:
+    """Compiled code takes them and the payload as they are, and writes where it is told."""
+    made, payload = rttrr.compile("tau"), Wrench((1.0, 2.0, 3.0))
+    state = [x.astype(dtype) for x in some((70,))]
+    expected, loaded = made(*state), made(*state, payload=payload)
+    other = [LAYOUTS[layout](x) for x in state]
+    for out in (None, np.empty((70, 5), order="F"), np.empty((140, 10))[::-2, ::2]):
+        np.testing.assert_array_equal(made._at_once(*other, None, out), expected)
+        np.testing.assert_array_equal(made._at_once(*other, payload, out), loaded)
+
+
 @pytest.mark.parametrize("layout", LAYOUTS)
 def test_the_layout_of_a_payload_does_not_change_a_bit(kernel: Kernel, layout: str) -> None:
     if layout in ("dict", "inside-nan", "field-of-a-record"):

@@ -28,9 +28,9 @@ Task = Callable[[int, int], bool]
 
 
 One = Callable[..., Any]
-"""Computes one state of arrays of the program's type, or up to `FEW`: `one(q, v, a, force, moment, ..., *outputs)`,
-with None for what is not read and for outputs to be allocated. Returns the output, a tuple of several, or None where it
-declines what was passed, or a result is not finite."""
+"""Computes one state, or up to `FEW` in arrays of any strides: `one(q, v, a, force, moment, ..., *outputs)`, with None
+for what is not read and for outputs to be allocated; all but the first may be one state for all. Returns the output, a
+tuple of several, or None where it declines what was passed, or a result is not finite."""
 
 FEW = 4096
 """States that `Executable.one` computes in one call; more are worth threads, and must not hold up Ctrl-C."""

@@ -47,16 +47,18 @@ VIEW = {"data": 0, "object": 8, "ndim": 36, "format": 40, "shape": 48, "strides"
 
 VIEW_SIZE = 80
 
-READ, WRITE = 0x1C, 0x3D
-"""What is asked of an input, PyBUF_RECORDS_RO; of an output, PyBUF_C_CONTIGUOUS | PyBUF_WRITABLE | PyBUF_FORMAT."""
+READ, WRITE = 0x1C, 0x1D
+"""What is asked of an input, PyBUF_RECORDS_RO; of an output, PyBUF_RECORDS."""
 
-FORMAT = {name: int.from_bytes(code, "little") for name, code in (("float64", b"d\0"), ("float32", b"f\0"))}
+FORMAT = {
+    bits: ir.Constant(ir.IntType(16), int.from_bytes(code, "little")) for bits, code in ((64, b"d\0"), (32, b"f\0"))
+}
 """The format of native, aligned numbers: all else begins with another character, or with one more."""
 
 NULL = ir.Constant(PTR, None)
 
-Array = tuple[ir.Value, ir.Value, ir.Value]
-"""Address, and distance in bytes from state to state and from column to column."""
+Array = tuple[ir.Value, ir.Value, ir.Value, ir.Value]
+"""Address, distance in bytes from state to state and from column to column, 1 for float32: as in a record."""
 
 
 @dataclass
@@ -71,6 +73,11 @@ class _One:
     none: ir.Value
     ndarray: ir.Value
     decline: ir.Block
+
+    @property
+    def single(self) -> ir.Value:
+        """What a record of an output has for its type."""
+        return number(int(self.layout.float_type.bits == 32))
 
     @property
     def size(self) -> int:
@@ -90,18 +97,17 @@ class _One:
         arrays = []
         for k, field in enumerate(inputs):
             view = w.offset(views, VIEW_SIZE * k)
-            self._fill(items[field.name], view, READ)
+            single = self._fill(items[field.name], view, READ)
             if k == 0:
                 batched, m = self._batch(view, field)
-            arrays.append(self._array(view, field, batched, m, output=False))
+            arrays.append((*self._array(view, field, batched, m), single))
         for k, field in enumerate(outputs):
             view, reference = w.offset(views, VIEW_SIZE * (len(inputs) + k)), w.offset(owned, 8 * k)
             arrays.append(self._output(items[field.name], view, reference, field, (batched, m)))
         self._require_apart(arrays, m)
         records = self._zeroed(8 * RECORD * len(arrays))
-        single = [number(1)] * (self.layout.float_type.bits == 32)
-        for k, (base, *distances) in enumerate(arrays):
-            for entry, value in enumerate((b.ptrtoint(base, I64), *distances, *single)):
+        for k, (base, *rest) in enumerate(arrays):
+            for entry, value in enumerate((b.ptrtoint(base, I64), *rest)):
                 w.store(value, w.offset(records, 8 * (RECORD * k + entry)))
         bad = b.call(self.run, [records, number(0), m])
         w.require(b.icmp_signed("==", bad, number(0)), self.decline)
@@ -143,7 +149,9 @@ class _One:
     ) -> Array:
         """The array to write: the one passed, or a new one for None; a reference to it is kept."""
         w, b, (batched, m) = self.w, self.w.builder, batch
-        data = w.memory(PTR)
+        data, row, column = w.memory(PTR), w.memory(I64), w.memory(I64)
+        w.store(number(self.size * field.width), row)
+        w.store(number(self.size), column)
         with b.if_else(b.icmp_unsigned("==", item, self.none)) as (absent, passed):
             with absent:
                 sizes = w.memory(I64, 1 + len(field.shape))
@@ -164,12 +172,14 @@ class _One:
             with passed:
                 b.call(self.api["Py_IncRef"], [item])
                 w.store(item, reference)
-                self._fill(item, view, WRITE)
-                w.store(self._array(view, field, batched, m, output=True)[0], data)
-        return w.load(PTR, data), number(self.size * field.width), number(self.size)
+                single = self._fill(item, view, WRITE)
+                w.require(b.icmp_signed("==", single, self.single), self.decline)
+                for value, memory in zip(self._array(view, field, batched, m), (data, row, column), strict=True):
+                    w.store(value, memory)
+        return w.load(PTR, data), w.load(I64, row), w.load(I64, column), self.single
 
-    def _fill(self, item: ir.Value, view: ir.Value, flags: int) -> None:
-        """The buffer of an array of such numbers; of a subclass, masked arrays among them, Python code decides."""
+    def _fill(self, item: ir.Value, view: ir.Value, flags: int) -> ir.Value:
+        """The buffer of an array, 1 if of float32; of a subclass, masked arrays among them, Python code decides."""
         w, b = self.w, self.w.builder
         cls = b.call(self.api["PyObject_Type"], [item])
         b.call(self.api["Py_DecRef"], [cls])
@@ -179,8 +189,9 @@ class _One:
             b.call(self.api["PyErr_Clear"], [])
             b.branch(self.decline)
         form = w.load(ir.IntType(16), w.load(PTR, w.offset(view, VIEW["format"])), 1)
-        wanted = ir.Constant(ir.IntType(16), FORMAT[self.layout.float_type.name])
-        w.require(b.icmp_unsigned("==", form, wanted), self.decline)
+        single = b.icmp_unsigned("==", form, FORMAT[32])
+        w.require(b.or_(single, b.icmp_unsigned("==", form, FORMAT[64])), self.decline)
+        return b.zext(single, I64)
 
     def _batch(self, view: ir.Value, field: Field) -> tuple[ir.Value, ir.Value]:
         """Whether the first array has one axis more than a state, 0 or 1, and how many states there are."""
@@ -193,39 +204,40 @@ class _One:
         w.require(b.and_(b.icmp_signed(">=", m, number(1)), b.icmp_signed("<=", m, number(FEW))), self.decline)
         return batched, m
 
-    def _array(self, view: ir.Value, field: Field, batched: ir.Value, m: ir.Value, output: bool) -> Array:
-        """One array, if it has the axes that it must have; several states lie in rows."""
+    def _array(
+        self, view: ir.Value, field: Field, batched: ir.Value, m: ir.Value
+    ) -> tuple[ir.Value, ir.Value, ir.Value]:
+        """One array, if it has the axes that it must and evenly spaced numbers; an input may be one state for all."""
         w, b = self.w, self.w.builder
-        several = b.icmp_signed("==", batched, number(1))
-        ndim = b.sext(w.load(I32, w.offset(view, VIEW["ndim"])), I64)
-        w.require(b.icmp_signed("==", ndim, b.add(batched, number(len(field.shape)))), self.decline)
+        axes = b.sub(b.sext(w.load(I32, w.offset(view, VIEW["ndim"])), I64), number(len(field.shape)))
+        several = b.icmp_signed("==", axes, number(1))
+        one_for_all = b.icmp_signed("==", axes, number(0)) if field in self.program.inputs else ir.Constant(I1, 0)
+        w.require(b.or_(b.icmp_signed("==", axes, batched), one_for_all), self.decline)
         shape, strides = (w.load(PTR, w.offset(view, VIEW[key])) for key in ("shape", "strides"))
         w.require(b.icmp_signed("==", b.select(several, w.load(I64, shape), m), m), self.decline)
-        first = b.shl(batched, number(3))  # of the axes of a state, in bytes
-        for axis, length in enumerate(field.shape):
-            size = w.load(I64, w.offset(w.offset(shape, first), 8 * axis))
-            w.require(b.icmp_signed("==", size, number(length)), self.decline)
-        data, row = w.load(PTR, w.offset(view, VIEW["data"])), number(self.size * field.width)
-        if output:
-            return data, row, number(self.size)
-        column = w.load(I64, w.offset(strides, first))
-        in_rows = b.and_(
-            b.icmp_signed("==", column, number(self.size)),
-            b.icmp_signed("==", b.select(several, w.load(I64, strides), row), row),
-        )
-        w.require(b.or_(in_rows, b.not_(several)), self.decline)
-        return data, row, column
+        row = b.select(several, w.load(I64, strides), number(0))
+        first = b.shl(axes, number(3))  # of the axes of a state, in bytes
+        shape, strides = w.offset(shape, first), w.offset(strides, first)
+        column, inside = number(self.size), 1
+        for axis, length in reversed(list(enumerate(field.shape))):
+            w.require(b.icmp_signed("==", w.load(I64, w.offset(shape, 8 * axis)), number(length)), self.decline)
+            stride = w.load(I64, w.offset(strides, 8 * axis))
+            column = stride if axis == len(field.shape) - 1 else column
+            w.require(b.icmp_signed("==", stride, b.mul(column, number(inside))), self.decline)
+            inside *= length
+        return w.load(PTR, w.offset(view, VIEW["data"])), row, column
 
     def _require_apart(self, arrays: Sequence[Array], m: ir.Value) -> None:
         """Outputs lie apart, and none over an input that a later block reads; within one block all is read before."""
         w, b, count = self.w, self.w.builder, len(self.program.inputs)
-        ends = [b.ptrtoint(w.offset(base, b.mul(m, row)), I64) for base, row, _ in arrays]
-        starts = [b.ptrtoint(base, I64) for base, _, _ in arrays]
+        fields = (*self.program.inputs, *self.program.outputs)
+        spans = [self._span(array, field.width, m) for array, field in zip(arrays, fields, strict=True)]
 
         def apart(pairs: Iterable[tuple[int, int]]) -> ir.Value:
             clear: ir.Value = ir.Constant(I1, 1)
             for k, i in pairs:
-                before, behind = (b.icmp_unsigned("<=", *pair) for pair in ((ends[k], starts[i]), (ends[i], starts[k])))
+                (start, end), (other_start, other_end) = spans[k], spans[i]
+                before, behind = b.icmp_signed("<=", end, other_start), b.icmp_signed("<=", other_end, start)
                 clear = b.and_(clear, b.or_(before, behind))
             return clear
 
@@ -233,6 +245,16 @@ class _One:
         w.require(apart(combinations(outputs, 2)), self.decline)
         in_one_block = b.icmp_signed("<=", m, number(self.layout.block))
         w.require(b.or_(in_one_block, apart(product(range(count), outputs))), self.decline)
+
+    def _span(self, array: Array, width: int, m: ir.Value) -> tuple[ir.Value, ir.Value]:
+        """Where an array begins and ends in memory, whatever its strides."""
+        b, (base, row, column, _) = self.w.builder, array
+        start = end = b.ptrtoint(base, I64)
+        for distance in (b.mul(row, b.sub(m, number(1))), b.mul(column, number(width - 1))):
+            forward = b.icmp_signed(">", distance, number(0))
+            start = b.add(start, b.select(forward, number(0), distance))
+            end = b.add(end, b.select(forward, distance, number(0)))
+        return start, b.add(end, number(8))
 
 
 def python_entry(module: ir.Module, program: Program | CallProgram, layout: Layout, run: ir.Function) -> None:
