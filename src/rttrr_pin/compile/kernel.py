@@ -185,9 +185,7 @@ class Kernel(Generic[Result]):
         payloads = self._loads(payload)
         variant = self._variant(tuple(PayloadSlot(load.link, load.in_base) for load in payloads))
         if isinstance(payload, Wrench) and not self._floats:
-            with np.errstate(over="ignore"):  # infinite in float32, which results show
-                force, moment = (x.astype(self.dtype, copy=False) for x in (payloads[0].f, payloads[0].n))
-            self._last = payload, variant.executable.one, (force, moment)
+            self._last = payload, variant.executable.one, (payloads[0].f, payloads[0].n)
         arrays = self._arrays(q, v, a)
         numbers = {
             f"payload {name} at link {load.link + 1}{f' ({k + 1})' if len(payloads) > 1 else ''}": x
