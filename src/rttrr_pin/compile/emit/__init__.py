@@ -6,11 +6,11 @@ file and one line here.
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Protocol
 
-import numpy as np
 from numpy.typing import NDArray
 
 from rttrr_pin.errors import InputError, UnknownNameError
@@ -32,8 +32,9 @@ One = Callable[..., Any]
 for what is not read and for outputs to be allocated; all but the first may be one state for all. Returns the output, a
 tuple of several, or None where it declines what was passed, or a result is not finite."""
 
-FEW = 4096
-"""States that `Executable.one` computes in one call; more are worth threads, and must not hold up Ctrl-C."""
+FEW, FEW_NUMBERS = 4096, 80_000
+"""States that `Executable.one` computes in one call, and numbers in and out that these may have; more are worth
+threads, and must not hold up Ctrl-C."""
 
 
 class Executable(Protocol):
@@ -90,9 +91,10 @@ def task(run: Callable[[int, int, int], int], executable: object, arrays: Sequen
         executable: what holds the code, which must live as long as the task.
         arrays: inputs, then outputs.
     """
-    described = [(x.__array_interface__["data"][0], *x.strides, x.dtype.itemsize == 4) for x in arrays]
-    records = np.array(described, dtype=np.int64)
-    address = records.ctypes.data
+    records = array("q")
+    for x in arrays:
+        records.extend((x.__array_interface__["data"][0], *x.strides, x.dtype.itemsize == 4))
+    address = records.buffer_info()[0]
 
     def part(start: int, stop: int, alive: object = (executable, records, arrays)) -> bool:
         code = run(address, start, stop)

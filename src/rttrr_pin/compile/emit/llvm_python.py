@@ -18,7 +18,7 @@ from itertools import combinations, product
 from llvmlite import ir
 
 from rttrr_pin.compile.call_program import CallProgram
-from rttrr_pin.compile.emit import FEW, RECORD
+from rttrr_pin.compile.emit import FEW, FEW_NUMBERS, RECORD
 from rttrr_pin.compile.emit.llvm_vectors import Layout
 from rttrr_pin.compile.emit.llvm_writer import I1, I32, I64, PTR, Writer, function, number, untyped
 from rttrr_pin.compile.fields import Field
@@ -201,7 +201,9 @@ class _One:
         batched = b.zext(axes, I64)
         several = b.icmp_signed("==", batched, number(1))
         m = b.select(several, w.load(I64, w.load(PTR, w.offset(view, VIEW["shape"]))), number(1))
-        w.require(b.and_(b.icmp_signed(">=", m, number(1)), b.icmp_signed("<=", m, number(FEW))), self.decline)
+        numbers = self.program.width_in + self.program.width_out
+        few = max(self.layout.block, min(FEW, FEW_NUMBERS // max(numbers, 1)))
+        w.require(b.and_(b.icmp_signed(">=", m, number(1)), b.icmp_signed("<=", m, number(few))), self.decline)
         return batched, m
 
     def _array(
