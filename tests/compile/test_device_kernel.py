@@ -35,12 +35,12 @@ def card() -> CpuDriver:
 
 @pytest.fixture(scope="module")
 def kernel(rttrr: Robot, card: CpuDriver) -> DeviceKernel:
-    return DeviceKernel(rttrr.model, "tau", card)
+    return DeviceKernel(rttrr.model, "tau", driver=card)
 
 
 @pytest.fixture(scope="module")
 def both(rttrr: Robot, card: CpuDriver) -> DeviceKernel:
-    return DeviceKernel(rttrr.model, ("tau", "f"), card)
+    return DeviceKernel(rttrr.model, ("tau", "f"), driver=card)
 
 
 def states(*batch: int) -> list[np.ndarray]:
@@ -60,6 +60,18 @@ def test_batches_of_any_shape(kernel: DeviceKernel, rttrr: Robot, batch: tuple[i
     found = kernel(*there(*arrays))
     np.testing.assert_array_equal(found.array, rttrr.compile()(*arrays))
     assert found.array.shape == (*batch, 5)
+
+
+def test_float32(rttrr: Robot, card: CpuDriver) -> None:
+    arrays = [x.astype(np.float32) for x in states(STATES)]
+    kernel = DeviceKernel(rttrr.model, ("tau", "tau_bound"), "float32", card)
+    found, load = kernel(*there(*arrays), payload=Wrench((1.0, 2.0, 3.0))), Wrench((1.0, 2.0, 3.0))
+    wanted = rttrr.compile(("tau", "tau_bound"), dtype="float32")(*arrays, payload=load)
+    for name, x in found.items():
+        assert x.array.dtype == np.float32
+        np.testing.assert_array_equal(x.array, wanted[name])
+    with pytest.raises(InputError, match=r"numbers of type float64, expected float32"):
+        kernel(*there(*states(STATES)))
 
 
 def test_several_outputs_are_a_dict(both: DeviceKernel, rttrr: Robot) -> None:
@@ -168,9 +180,9 @@ def test_arguments_that_are_missing_or_too_many(kernel: DeviceKernel, rttrr: Rob
     with pytest.raises(InputError, match="a is missing"):
         kernel(q, v)
     with pytest.raises(InputError, match="v was passed"):
-        DeviceKernel(rttrr.model, "mass_matrix", card)(q, v)
+        DeviceKernel(rttrr.model, "mass_matrix", driver=card)(q, v)
     with pytest.raises(InputError, match="does not depend on it"):
-        DeviceKernel(rttrr.model, "mass_matrix", card)(q, payload=Wrench((1.0, 0.0, 0.0)))
+        DeviceKernel(rttrr.model, "mass_matrix", driver=card)(q, payload=Wrench((1.0, 0.0, 0.0)))
 
 
 def test_arrays_that_do_not_fit(kernel: DeviceKernel, both: DeviceKernel) -> None:
@@ -209,12 +221,12 @@ def test_a_robot_that_is_too_large(card: CpuDriver) -> None:
     robot = rttrr_pin.load(random_chain(0, ("revolute",) * 120))
     x = OnCard(np.zeros((1, 120)))
     with pytest.raises(InputError, match="too many operations for one thread of a GPU.*emitter='llvm'"):
-        DeviceKernel(robot.model, "tau", card)(x, x, x)
+        DeviceKernel(robot.model, "tau", driver=card)(x, x, x)
 
 
 def test_outputs_are_checked_at_once(rttrr: Robot, card: CpuDriver) -> None:
     with pytest.raises(UnknownNameError, match="no output is called 'torque'"):
-        DeviceKernel(rttrr.model, "torque", card)
+        DeviceKernel(rttrr.model, "torque", driver=card)
 
 
 # ---- without a card

@@ -6,7 +6,7 @@ import ctypes
 import re
 import subprocess
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -154,9 +154,14 @@ class CpuDriver:
     def flag(self) -> ctypes.c_ulonglong:
         return ctypes.c_ulonglong(7)
 
-    def launch(self, function: Any, blocks: int, threads: int, arguments: Sequence[int], stream: Any) -> None:
-        self.launches.append((blocks, threads))
-        run(function, blocks, threads, arguments)
+    def launch(
+        self, function: Any, blocks: int, threads: int, arguments: Sequence[int], stream: Any
+    ) -> Callable[[], None]:
+        def enqueue() -> None:
+            self.launches.append((blocks, threads))
+            run(function, blocks, threads, arguments)
+
+        return enqueue
 
     def wait(self, stream: Any) -> None:
         self.waits += 1

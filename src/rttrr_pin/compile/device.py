@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import ctypes
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import prod
-from typing import Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from numpy.typing import DTypeLike
@@ -25,6 +26,9 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Payloads
 from rttrr_pin.errors import InputError, NumberError
 
+if TYPE_CHECKING:
+    from rttrr_pin.compile.emit.cuda import CudaFunction
+
 BLOCKS = 1 << 16
 """Most blocks of one launch; their threads go on with the states that are left."""
 
@@ -39,18 +43,15 @@ class DeviceKernel:
     Attributes:
         model: the robot.
         outputs: what it computes.
+        dtype: the type of all its numbers, float64 or float32.
         host: the kernel of the processor for the same.
     """
 
     def __init__(
-        self,
-        model: Model,
-        outputs: str | Sequence[str],
-        driver: Driver | None = None,
-        dtype: DTypeLike = "float64",
+        self, model: Model, outputs: str | Sequence[str], dtype: DTypeLike = "float64", driver: Driver | None = None
     ) -> None:
         self.model, self.host = model, Kernel[Any](model, outputs, dtype=dtype)
-        self.outputs, self._single = self.host.outputs, isinstance(outputs, str)
+        self.outputs, self._single, self.dtype = self.host.outputs, isinstance(outputs, str), self.host.dtype
         self._float_type = float_type(dtype)
         self._emitter = CudaEmitter(driver)
         self._driver = self._emitter.driver  # now, so that what is missing is said before the first call
@@ -58,7 +59,9 @@ class DeviceKernel:
         self._flags: list[ctypes.c_ulonglong] = []  # those that no call holds
 
     def __repr__(self) -> str:
-        return f"<DeviceKernel of {self.model.name!r}: {', '.join(self.outputs)} on {self._driver.name}>"
+        return (
+            f"<DeviceKernel of {self.model.name!r}: {', '.join(self.outputs)} in {self.dtype} on {self._driver.name}>"
+        )
 
     def source(self, emitter: str = "cuda") -> str:
         """The program as a source file; see `Kernel.source`."""
@@ -90,10 +93,12 @@ class DeviceKernel:
             InputError: an argument is missing, or too many, or no array of this GPU.
         """
         flag = self._flags.pop() if self._flags else self._driver.flag()
-        launch = self._prepared(flag, q, v, a, payload, out, stream)
-        launch()
-        launch.check()
-        self._flags.append(flag)
+        try:
+            launch = self._prepared(flag, q, v, a, payload, out, stream)
+            launch()
+            launch.check()
+        finally:
+            self._flags.append(flag)
         return launch.out
 
     def bind(
@@ -109,7 +114,8 @@ class DeviceKernel:
         loads = self.host._loads(payload)
         variant = self._variant(tuple(PayloadSlot(load.link, load.in_base) for load in loads))
         given = self._given(q, v, a)
-        given += [driver.copied(x.astype(self._float_type.name), own) for load in loads for x in (load.f, load.n)]
+        with np.errstate(over="ignore"):  # infinite in float32, which results show
+            given += [driver.copied(x.astype(self.dtype), own) for load in loads for x in (load.f, load.n)]
         views = [self._view(field.name, x, own) for field, x in zip(variant.inputs, given, strict=True)]
         leading = [view.shape[:-1] for view in views]
         batch = next((axes for axes in leading if prod(axes) != 1), max(leading, key=len, default=()))
@@ -125,11 +131,13 @@ class DeviceKernel:
         if out is None:
             results = [_in_library_of(q, x) for x in results]
             out = results[0] if self._single else dict(zip(self.outputs, results, strict=True))
-        threads = cuda_text.shape(variant.inputs, variant.outputs, self._float_type).threads
-        return Launch(
-            driver, variant.executable, batch, threads, (prod(batch), *numbers, ctypes.addressof(flag)), own, flag,
-            self.outputs, out, (given, results),
-        )  # fmt: skip
+        rows, enqueue = prod(batch), _nothing
+        if rows:
+            threads = cuda_text.shape(variant.inputs, variant.outputs, self._float_type).threads
+            blocks = min(-(-rows // threads), BLOCKS)
+            handle = cast("CudaFunction", variant.executable).handle
+            enqueue = driver.launch(handle, blocks, threads, (rows, *numbers, ctypes.addressof(flag)), own)
+        return Launch(out, enqueue, partial(driver.wait, own), flag, batch, self.outputs, (given, results))
 
     def _variant(self, slots: tuple[PayloadSlot, ...]) -> Variant:
         if slots not in self._variants:
@@ -179,23 +187,17 @@ class Launch:
         out: the results, once the stream has come so far.
     """
 
-    _driver: Driver
-    _function: Any
-    _batch: tuple[int, ...]
-    _threads: int
-    _arguments: tuple[int, ...]
-    _stream: Any
-    _flag: ctypes.c_ulonglong
-    _outputs: tuple[str, ...]
     out: Any
+    _enqueue: Callable[[], None]
+    _wait: Callable[[], None]
+    _flag: ctypes.c_ulonglong
+    _batch: tuple[int, ...]
+    _outputs: tuple[str, ...]
     _alive: object
 
     def __call__(self) -> None:
         """Put the call on the stream; nothing is waited for."""
-        rows = self._arguments[0]
-        if rows:
-            blocks = min(-(-rows // self._threads), BLOCKS)
-            self._driver.launch(self._function.handle, blocks, self._threads, self._arguments, self._stream)
+        self._enqueue()
 
     def check(self) -> None:
         """Wait for the stream.
@@ -203,7 +205,7 @@ class Launch:
         Raises:
             NumberError: in one of the calls since the last check a result was not finite; the others are computed.
         """
-        self._driver.wait(self._stream)
+        self._wait()
         state, self._flag.value = self._flag.value, NONE
         if state == NONE:
             return
@@ -214,6 +216,10 @@ class Launch:
             name=self._outputs[0],
             index=index,
         )
+
+
+def _nothing() -> None:
+    """The call of a batch without states."""
 
 
 def _in_library_of(x: Any, result: Any) -> Any:

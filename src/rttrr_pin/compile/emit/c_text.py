@@ -51,29 +51,52 @@ class Dialect:
     sincos: str | None = None
 
 
-def operations(program: Program, dialect: Dialect, place: Place) -> Iterator[str]:
-    """The body of a function: inputs read, operations in order, outputs written last."""
+def operations(program: Program, dialect: Dialect, place: Place, early: bool = False) -> Iterator[str]:
+    """The body of a function: all inputs read, operations in order, outputs written.
+
+    Args:
+        program: the program.
+        dialect: how it is written.
+        place: where inputs and outputs stand.
+        early: whether an output is written once it is computed, so that no register has to keep it; else all at last.
+    """
     op, args = program.graph.op, program.graph.args
     entries = _entries(program.inputs)
     names = {x: _name(program, dialect, entries, x) for x in program.order}
     for x in program.order:
         if op[x] is Op.INPUT:
             yield f"const {dialect.real} {names[x]} = {place(*entries[args[x][0]])};"
+    written: dict[int, list[str]] = {}
+    for (field, k), x in zip(_entries(program.outputs), program.results, strict=True):
+        written.setdefault(x, []).append(f"{place(field, k)} = {names[x]};")
     angles: set[int] = set()
     for x in program.order:
-        if op[x] in LEAVES:
-            continue
-        if dialect.sincos and op[x] in (Op.SIN, Op.COS):
-            angle = args[x][0]
-            if angle not in angles:
-                angles.add(angle)
-                yield f"{dialect.real} sin{angle}, cos{angle};"
-                yield f"{dialect.sincos}({names[angle]}, &sin{angle}, &cos{angle});"
-            yield f"const {dialect.real} {names[x]} = {op[x].name.lower()}{angle};"
-        else:
-            yield f"const {dialect.real} {names[x]} = {dialect.form[op[x]].format(*(names[y] for y in args[x]))};"
-    for (field, k), x in zip(_entries(program.outputs), program.results, strict=True):
-        yield f"{place(field, k)} = {names[x]};"
+        if op[x] not in LEAVES:
+            yield from _operation(program, dialect, names, angles, x)
+            if early:
+                yield from written.pop(x, ())
+    for lines in written.values():
+        yield from lines
+
+
+def _operation(program: Program, dialect: Dialect, names: Mapping[int, str], angles: set[int], x: int) -> Iterator[str]:
+    """The operation of a node; `angles` are those whose sine and cosine there are."""
+    op, args = program.graph.op[x], program.graph.args[x]
+    if not (dialect.sincos and op in (Op.SIN, Op.COS)):
+        yield f"const {dialect.real} {names[x]} = {dialect.form[op].format(*(names[y] for y in args))};"
+        return
+    angle = args[0]
+    if angle not in angles:
+        angles.add(angle)
+        yield f"{dialect.real} sin{angle}, cos{angle};"
+        yield f"{dialect.sincos}({names[angle]}, &sin{angle}, &cos{angle});"
+    yield f"const {dialect.real} {names[x]} = {op.name.lower()}{angle};"
+
+
+def results(program: Program, dialect: Dialect) -> list[str]:
+    """The name of each number of the outputs, or its value."""
+    entries = _entries(program.inputs)
+    return [_name(program, dialect, entries, x) for x in program.results]
 
 
 def _entries(fields: Sequence[Field]) -> list[tuple[Field, int]]:

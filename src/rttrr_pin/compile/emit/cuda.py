@@ -13,8 +13,8 @@ from rttrr_pin.compile.fields import Field
 from rttrr_pin.compile.program import Program
 from rttrr_pin.errors import InputError
 
-LONGEST = 100_000
-"""Operations of a program in straight lines that is compiled; a longer one takes minutes."""
+LONGEST = 20_000
+"""Nodes of a program that is compiled: at that length NVRTC takes a minute or two."""
 
 
 class CudaEmitter:

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import ctypes
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Protocol
 
 import numpy as np
@@ -79,8 +80,10 @@ class Driver(Protocol):
         """A number that host and card both see at the same address."""
         ...
 
-    def launch(self, function: Any, blocks: int, threads: int, arguments: Sequence[int], stream: Any) -> None:
-        """Put a call of a function on a stream."""
+    def launch(
+        self, function: Any, blocks: int, threads: int, arguments: Sequence[int], stream: Any
+    ) -> Callable[[], None]:
+        """What puts a call of a function on a stream, each time it is called."""
         ...
 
     def wait(self, stream: Any) -> None:
@@ -130,6 +133,7 @@ class CudaCore:
 
     def stream(self, stream: Any) -> Any:
         """See `Driver`; a stream is one of cuda-core, anything with `__cuda_stream__`, or its handle."""
+        self._core.Device(self.device).set_current()  # each thread has a current card of its own
         if stream is None:
             return self._core.LEGACY_DEFAULT_STREAM
         if isinstance(stream, int):
@@ -163,9 +167,12 @@ class CudaCore:
         self._flags.append(buffer)
         return ctypes.c_ulonglong.from_address(int(buffer.handle))
 
-    def launch(self, function: Any, blocks: int, threads: int, arguments: Sequence[int], stream: Any) -> None:
-        """See `Driver`."""
-        self._core.launch(stream, self._core.LaunchConfig(grid=blocks, block=threads), function, *arguments)
+    def launch(
+        self, function: Any, blocks: int, threads: int, arguments: Sequence[int], stream: Any
+    ) -> Callable[[], None]:
+        """See `Driver`; whole numbers of Python are passed as 64 bits, which is what all arguments have."""
+        config = self._core.LaunchConfig(grid=blocks, block=threads)
+        return partial(self._core.launch, stream, config, function, *arguments)
 
     def wait(self, stream: Any) -> None:
         """See `Driver`."""

@@ -24,12 +24,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from rttrr_pin.compile.emit.c_text import Dialect, comment, function_name, operations
+from rttrr_pin.compile.emit.c_text import Dialect, comment, function_name, operations, results
 from rttrr_pin.compile.expression import Op
 from rttrr_pin.compile.fields import Field
 from rttrr_pin.compile.float_type import FloatType
 from rttrr_pin.compile.program import Program
-from rttrr_pin.compile.sincos import COSINE, LARGEST, PIO2, ROUND, SINE, TWO_OVER_PI
+from rttrr_pin.compile.sincos import sincos_in
 
 SHARED = 48 * 1024
 """Bytes of shared memory that a block has on every card."""
@@ -81,7 +81,7 @@ def _float(x: float) -> str:
 
 DIALECTS = {
     "float64": Dialect("double", _intrinsics("d", "", ""), _double, "sincos_of"),
-    "float32": Dialect("float", _intrinsics("f", "f", "f"), _float, "sincosf"),
+    "float32": Dialect("float", _intrinsics("f", "f", "f"), _float, "sincos_of"),
 }
 """How operations are written, by the type of the numbers."""
 
@@ -100,19 +100,19 @@ class Shape:
     pitch: int
     staged: tuple[Field, ...]
 
-    def column(self, field: Field, fields: Sequence[Field]) -> int:
+    def column(self, field: Field) -> int:
         """Where an array begins among the numbers of a thread."""
-        return sum(other.width for other in fields[: fields.index(field)])
+        return sum(other.width for other in self.staged[: self.staged.index(field)])
 
 
 def shape(inputs: Sequence[Field], outputs: Sequence[Field], float_type: FloatType) -> Shape:
-    """What fits into shared memory; results lie over the inputs, which have all been read by then."""
-    size = float_type.size
-    sides = [(side, sum(field.width for field in side) | 1) for side in (inputs, outputs)]  # odd: no bank twice
-    fitting = [(side, width) for side, width in sides if width * size * BLOCKS[-1] <= SHARED]
-    pitch = max((width for _, width in fitting), default=0)
-    threads = next(threads for threads in BLOCKS if pitch * size * threads <= SHARED)
-    return Shape(threads, pitch, tuple(field for side, _ in fitting for field in side))
+    """What fits into shared memory: all arrays, or what is read, or what is written, or none."""
+    for staged in ((*inputs, *outputs), tuple(inputs), tuple(outputs)):
+        pitch = sum(field.width for field in staged) | 1  # odd, so that no two threads of 32 meet in a bank
+        for threads in BLOCKS:
+            if pitch * float_type.size * threads <= SHARED:
+                return Shape(threads, pitch, staged)
+    return Shape(BLOCKS[0], 0, ())
 
 
 def source(program: Program, robot: str | None = None, labels: Mapping[str, Sequence[str]] | None = None) -> str:
@@ -171,7 +171,7 @@ def _moves(what: str, fields: Sequence[Field], own: Shape) -> Iterator[str]:
     for field in staged:
         name = field.name
         array = f"{name} + first * {name}_row, {name}_row, {name}_column"
-        yield f"        {what}({array}, count, {field.width}, tile + {own.column(field, fields)});"
+        yield f"        {what}({array}, count, {field.width}, tile + {own.column(field)});"
     if staged:
         yield "        __syncthreads();"
 
@@ -182,25 +182,28 @@ def _state(program: Program, own: Shape) -> Iterator[str]:
 
     def place(field: Field, k: int) -> str:
         if field in own.staged:
-            return f"own[{own.column(field, inputs if field in inputs else outputs) + k}]"
-        return f"{field.name}[state * {field.name}_row + {k} * {field.name}_column]"
+            return f"own[{own.column(field) + k}]"
+        return f"{field.name}_own[{k} * {field.name}_column]"
 
     fused, zero = dialect.form[Op.FMA], dialect.number(0.0)
     entries = [(field, k) for field in inputs for k in range(field.width)]
+    for field in (*inputs, *outputs):
+        if field not in own.staged:
+            constant = "const " if field in inputs else ""
+            yield f"{constant}{dialect.real} *const {field.name}_own = {field.name} + state * {field.name}_row;"
     yield f"{dialect.real} check = {zero};"
     for index in program.unread:
         yield f"check = {fused.format(place(*entries[index]), zero, 'check')};"
-    yield from operations(program, dialect, place)
-    for field in outputs:
-        for k in range(field.width):
-            yield f"check = {fused.format(place(field, k), zero, 'check')};"
+    yield from operations(program, dialect, place, early=True)
+    for result in results(program, dialect):
+        yield f"check = {fused.format(result, zero, 'check')};"
     yield f"if (!(check == {zero})) atomicMin(first_bad, (unsigned long long)state);"
 
 
 def _functions(program: Program, own: Shape) -> Iterator[str]:
     """What the kernel calls: sines and cosines, and moves between arrays and shared memory."""
-    if program.float_type.bits == 64 and program.operations.sincos:
-        yield SINCOS
+    if program.operations.sincos:
+        yield _sincos(program.float_type)
     if own.pitch:
         real = program.float_type.c_name
         yield _move("gather", f"const {real} *from", f"{real} *to", "to[{0}] = from[{1}]", own)
@@ -223,43 +226,62 @@ def _move(name: str, array: str, tile: str, assign: str, own: Shape) -> str:
 """
 
 
-def _horner(terms: Sequence[float]) -> str:
-    """A polynomial in z, highest power first."""
-    value = _double(terms[-1])
-    for term in reversed(terms[:-1]):
-        value = f"__fma_rn({value}, z, {_double(term)})"
-    return value
+def _sincos(own: FloatType) -> str:
+    """Sine and cosine, operation by operation as `emit.llvm_vectors.polynomials` has them."""
+    dialect, numbers = DIALECTS[own.name], sincos_in(own)
+    real, number, form = dialect.real, dialect.number, dialect.form
 
+    def add(x: str, y: str) -> str:
+        return form[Op.ADD].format(x, y)
 
-SINCOS = f"""static __device__ __noinline__ void sincos_far(double q, double *s, double *c) {{
-    *s = sin(q);
-    *c = cos(q);
+    def sub(x: str, y: str) -> str:
+        return form[Op.SUB].format(x, y)
+
+    def mul(x: str, y: str) -> str:
+        return form[Op.MUL].format(x, y)
+
+    def fma(x: str, y: str, z: str) -> str:
+        return form[Op.FMA].format(x, y, z)
+
+    def horner(terms: Sequence[float]) -> str:
+        value = number(terms[-1])
+        for term in reversed(terms[:-1]):
+            value = fma(value, "z", number(term))
+        return value
+
+    pio2 = [number(x) for x in numbers.pio2]
+    steps = {
+        "shifted": fma("q", number(numbers.two_over_pi), number(numbers.round)),
+        "k": sub(number(numbers.round), "shifted"),
+        "t": fma("k", pio2[0], "q"),
+        "second": mul("k", pio2[1]),
+        "r": add("t", "second"),
+        "lost": sub("second", sub("r", "t")),
+        "low": add("lost", fma("k", pio2[2], fma("k", pio2[1], "-second"))),
+        "z": mul("r", "r"),
+        "sine": horner(numbers.sine),
+        "cosine": horner(numbers.cosine),
+        "x": add("r", fma(mul("r", "z"), "sine", "low")),
+        "half": mul("z", number(0.5)),
+        "w": sub(number(1.0), "half"),
+        "over": sub(sub(number(1.0), "w"), "half"),
+        "y": add("w", fma("-r", "low", fma(mul("z", "z"), "cosine", "over"))),
+    }
+    lines = "\n".join(f"    const {real} {name} = {value};" for name, value in steps.items())
+    return f"""static __device__ __noinline__ void sincos_far({real} q, {real} *s, {real} *c) {{
+    *s = ({real})sin((double)q);
+    *c = ({real})cos((double)q);
 }}
 
-static __device__ __forceinline__ void sincos_of(double q, double *s, double *c) {{
-    if (!(fabs(q) <= {_double(LARGEST)})) {{
+static __device__ __forceinline__ void sincos_of({real} q, {real} *s, {real} *c) {{
+    if (!({form[Op.ABS].format("q")} <= {number(numbers.largest)})) {{
         sincos_far(q, s, c);
         return;
     }}
-    const double shifted = __fma_rn(q, {_double(TWO_OVER_PI)}, {_double(ROUND)});
-    const double k = __dsub_rn({_double(ROUND)}, shifted);
-    const double t = __fma_rn(k, {_double(PIO2[0])}, q);
-    const double second = __dmul_rn(k, {_double(PIO2[1])});
-    const double r = __dadd_rn(t, second);
-    const double lost = __dsub_rn(second, __dsub_rn(r, t));
-    const double low = __dadd_rn(lost, __fma_rn(k, {_double(PIO2[2])}, __fma_rn(k, {_double(PIO2[1])}, -second)));
-    const double z = __dmul_rn(r, r);
-    const double sine = {_horner(SINE)};
-    const double cosine = {_horner(COSINE)};
-    const double half = __dmul_rn(z, 0.5);
-    const double w = __dsub_rn(1.0, half);
-    const double over = __dsub_rn(__dsub_rn(1.0, w), half);
-    const double x = __dadd_rn(r, __fma_rn(__dmul_rn(r, z), sine, low));
-    const double y = __dadd_rn(w, __fma_rn(-r, low, __fma_rn(__dmul_rn(z, z), cosine, over)));
-    const long long quadrant = __double_as_longlong(shifted);
-    const double u = quadrant & 1 ? y : x, m = quadrant & 1 ? x : y;
+{lines}
+    const int quadrant = (int){"__double_as_longlong" if own.bits == 64 else "__float_as_int"}(shifted);
+    const {real} u = quadrant & 1 ? y : x, m = quadrant & 1 ? x : y;
     *s = quadrant & 2 ? -u : u;
     *c = (quadrant + 1) & 2 ? -m : m;
 }}
 """
-"""Sine and cosine, operation by operation as `emit.llvm_vectors.polynomials` has them."""
