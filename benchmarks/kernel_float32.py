@@ -52,9 +52,11 @@ def speed(robot: Robot, count: int, repeats: int) -> dict[str, Any]:
         work[f"{dtype}, rows"] = lambda k=kernel, x=rows[dtype], out=out: k(*x, out=out, threads=1)
         work[f"{dtype}, columns"] = lambda k=kernel, x=columns[dtype], out=out_columns: k(*x, out=out, threads=1)
     work["float64 rows to float32"] = lambda: single(*rows["float64"], out=out, threads=1)
-    calls = {what: max(1, int(SHARE / max(cpu_time(run, 2), 1e-6))) for what, run in work.items()}
-    least = {what: min(cpu_time(run, calls[what]) for _ in range(1)) for what, run in work.items()}
-    for _ in range(repeats - 1):
+    for run in work.values():
+        run()  # compiles
+    calls = {what: max(1, int(SHARE / cpu_time(run, 5))) for what, run in work.items()}
+    least = dict.fromkeys(work, float("inf"))
+    for _ in range(repeats):
         for what, run in work.items():
             least[what] = min(least[what], cpu_time(run, calls[what]))
     ns = {what: round(1e9 * seconds / count, 2) for what, seconds in least.items()}

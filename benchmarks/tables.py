@@ -227,6 +227,41 @@ def calls() -> Lines:
     ]
 
 
+def float32() -> Lines:
+    """Both types in turns, and the bound in float32."""
+    data = result("kernel_float32")
+    rows = []
+    for key, own in data["robots"].items():
+        few, many = own["speed"]
+        cells = [
+            f"{of['ns_per_state'][f'float64, {layout}']:.0f} / {of['ns_per_state'][f'float32, {layout}']:.0f} = "
+            f"**{of['times_as_fast'][layout]:.1f}**"
+            for of in (few, many)
+            for layout in ("rows", "columns")
+        ]
+        proof = own["proof"]
+        bound = (
+            f"{proof['largest_share_of_bound']:.2f}; {proof['bound_times_error_median']:.0f}",
+            f"{proof['allowance_times_bound_median']:.0f}",
+        )
+        rows.append((ROBOTS[key], *cells, *bound))
+    proven = data["robots"]["rttrr"]["proof"]["states"]
+    few, many = (f"{own['states']:,}" for own in data["robots"]["rttrr"]["speed"])
+    return [
+        f"ns a state in float64 / in float32, tau on one thread, CPU time, in turns ({measured(data, 'kernel_float32')}); "
+        f"errors of tau at {proven:,} uniform states, proven by intervals:",
+        "",
+        *table(
+            ["", f"{few} rows", f"{few} columns", f"{many} rows", f"{many} columns"]
+            + [
+                "largest error / bound; bound / error, median",
+                "allowance of an unknown float32 program / bound, median",
+            ],
+            rows,
+        ),
+    ]
+
+
 def _row(rows: Rows, robot: str, what: str, threads: int = 1) -> dict[str, Any]:
     """One row at the states of the table."""
     wanted = (robot, what, threads, STATES)
@@ -504,7 +539,7 @@ def convention_remarks() -> Lines:
 TABLES: dict[str, Callable[[], Lines]] = {
     "agreement": agreement, "audit": audit, "bounds": bounds, "calls": calls,
     "convention remarks": convention_remarks, "conventions": conventions, "cost": cost, "errors": errors,
-    "faults": faults, "installed size": installed_size, "joints": joints, "kit": kit, "main path": main_path,
+    "faults": faults, "float32": float32, "installed size": installed_size, "joints": joints, "kit": kit, "main path": main_path,
     "single precision": single_precision, "mutation scores": mutation_scores, "operations": operations,
     "peers": peers, "robots": robots, "speed": speed, "three numbers": three_numbers,
     "vectors": vectors,
