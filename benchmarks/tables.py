@@ -248,12 +248,12 @@ def float32() -> Lines:
     proven = data["robots"]["rttrr"]["proof"]["states"]
     few, many = (f"{own['states']:,}" for own in data["robots"]["rttrr"]["speed"])
     return [
-        f"ns a state in float64 / in float32, tau on one thread, CPU time, in turns ({measured(data, 'kernel_float32')}); "
-        f"errors of tau at {proven:,} uniform states, proven by intervals:",
+        f"ns a state in float64 / in float32, tau on one thread, CPU time, in turns; errors of tau at {proven:,} "
+        f"uniform states, proven by intervals ({measured(data, 'kernel_float32')}):",
         "",
         *table(
-            ["", f"{few} rows", f"{few} columns", f"{many} rows", f"{many} columns"]
-            + [
+            [
+                *("", f"{few} rows", f"{few} columns", f"{many} rows", f"{many} columns"),
                 "largest error / bound; bound / error, median",
                 "allowance of an unknown float32 program / bound, median",
             ],
@@ -539,7 +539,8 @@ def convention_remarks() -> Lines:
 TABLES: dict[str, Callable[[], Lines]] = {
     "agreement": agreement, "audit": audit, "bounds": bounds, "calls": calls,
     "convention remarks": convention_remarks, "conventions": conventions, "cost": cost, "errors": errors,
-    "faults": faults, "float32": float32, "installed size": installed_size, "joints": joints, "kit": kit, "main path": main_path,
+    "faults": faults, "float32": float32, "installed size": installed_size, "joints": joints, "kit": kit,
+    "main path": main_path,
     "single precision": single_precision, "mutation scores": mutation_scores, "operations": operations,
     "peers": peers, "robots": robots, "speed": speed, "three numbers": three_numbers,
     "vectors": vectors,
