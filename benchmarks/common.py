@@ -89,7 +89,8 @@ def table(header: Iterable[Any], rows: Iterable[Iterable[Any]]) -> Lines:
 
 def finish(name: str, figures: dict[str, Any], save: bool, show: bool = True) -> None:
     """Print the figures unless a run is still going on, and write them whole if asked to."""
-    versions = {package: metadata.version(package) for package in PACKAGES}
+    installed = {distribution.name for distribution in metadata.distributions()}
+    versions = {package: metadata.version(package) for package in PACKAGES if package in installed}
     text = written({"benchmark": name, "machine": machine(), "versions": versions, **figures}) + "\n"
     if show:
         print(text, end="")

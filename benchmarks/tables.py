@@ -348,6 +348,35 @@ def joints() -> Lines:
     ]
 
 
+def gpu() -> Lines:
+    """What NVRTC makes of the kernels of a GPU."""
+    data = result("cuda_registers")
+    rows = []
+    for row in data["rows"]:
+        spills = f"{row['spill_store_bytes'] + row['spill_load_bytes']:,}" if row["spill_store_bytes"] else "none"
+        shared = f"{row['threads']}, {row['shared_bytes']:,}" if row["shared_bytes"] else f"{row['threads']}, none"
+        name = EXAMPLES.get(row["robot"]) or ROBOTS[row["robot"].removeprefix("example:")]
+        rows.append((name, row["outputs"], row["dtype"], row["registers"], spills, shared, f"{row['compile_s']:.1f} s"))
+    nvrtc, core = data["nvrtc"]["nvidia-cuda-nvrtc"], data["nvrtc"]["cuda-core"]
+    return [
+        f"Compiled for {data['architecture']} by NVRTC {nvrtc} through cuda-core {core}, without a GPU "
+        f"({measured(data, 'cuda_registers')}):",
+        "",
+        *table(
+            [
+                "robot",
+                "outputs",
+                "type",
+                "registers a thread",
+                "bytes spilled",
+                "threads, shared bytes",
+                "processor time",
+            ],
+            rows,
+        ),
+    ]
+
+
 def faults() -> Lines:
     """What is named of planted faults, and how long it takes."""
     bench, times = result("fault_bench"), result("diagnose_time")
@@ -539,7 +568,7 @@ def convention_remarks() -> Lines:
 TABLES: dict[str, Callable[[], Lines]] = {
     "agreement": agreement, "audit": audit, "bounds": bounds, "calls": calls,
     "convention remarks": convention_remarks, "conventions": conventions, "cost": cost, "errors": errors,
-    "faults": faults, "float32": float32, "installed size": installed_size, "joints": joints, "kit": kit,
+    "faults": faults, "float32": float32, "gpu": gpu, "installed size": installed_size, "joints": joints, "kit": kit,
     "main path": main_path,
     "single precision": single_precision, "mutation scores": mutation_scores, "operations": operations,
     "peers": peers, "robots": robots, "speed": speed, "three numbers": three_numbers,

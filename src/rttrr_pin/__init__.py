@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from rttrr_pin.auditing import audit as audit
     from rttrr_pin.auditing import read_publication as read_publication
     from rttrr_pin.compile import Kernel as Kernel
+    from rttrr_pin.compile.device import DeviceKernel as DeviceKernel
     from rttrr_pin.conformance import conform as conform
     from rttrr_pin.core.conventions import Convention as Convention
     from rttrr_pin.core.identification import BaseParameters as BaseParameters
@@ -57,6 +58,7 @@ __getattr__, __dir__, __all__ = lazy(
     {
         "auditing": ("audit", "read_publication"),
         "compile": ("Kernel",),
+        "compile.device": ("DeviceKernel",),
         "conformance": ("conform",),
         "core.conventions": ("Convention",),
         "core.identification": ("BaseParameters",),

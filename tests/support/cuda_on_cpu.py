@@ -20,7 +20,7 @@ from rttrr_pin.compile.program import Program
 SHIM = Path(__file__).with_name("cuda_shim.h")
 """What the text finds instead of CUDA."""
 
-OPTIONS = ("-std=gnu11", "-O1", "-ffp-contract=off", "-fPIC", "-shared", "-Wall", "-Wno-unused")
+OPTIONS = ("-std=gnu11", "-O0", "-ffp-contract=off", "-fPIC", "-shared", "-Wall", "-Wno-unused")
 
 
 class OnCpu:

@@ -204,9 +204,10 @@ def _functions(program: Program, own: Shape) -> Iterator[str]:
     """What the kernel calls: sines and cosines, and moves between arrays and shared memory."""
     if program.operations.sincos:
         yield _sincos(program.float_type)
-    if own.pitch:
-        real = program.float_type.c_name
+    real = program.float_type.c_name
+    if any(field in own.staged for field in program.inputs):
         yield _move("gather", f"const {real} *from", f"{real} *to", "to[{0}] = from[{1}]", own)
+    if any(field in own.staged for field in program.outputs):
         yield _move("scatter", f"{real} *to", f"const {real} *from", "to[{1}] = from[{0}]", own)
 
 
