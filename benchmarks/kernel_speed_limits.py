@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rttrr_pin.compile.emit import emitter
-from rttrr_pin.compile.emit.llvm_vectors import Lines, polynomials
+from rttrr_pin.compile.emit.llvm_angles import polynomials
+from rttrr_pin.compile.emit.llvm_vectors import Lines
 from rttrr_pin.compile.expression import LEAVES, Graph, Op
 from rttrr_pin.compile.fields import Field
 from rttrr_pin.compile.program import Program

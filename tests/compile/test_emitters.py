@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import subprocess
 from collections.abc import Callable, Iterator, Sequence
+from fractions import Fraction
 from pathlib import Path
 
 import mpmath
@@ -176,6 +177,39 @@ def test_programs_that_compute_little(name: str) -> None:
     assert norm_error(found, np.transpose(wanted)) <= ROUNDING
     found, bad = ran(name, program(lambda graph, q: [graph.constant(2.0), q[0]]), np.array([[5.0]]))
     assert found.tolist() == [[2.0, 5.0]] and not bad
+
+
+def test_angles_of_every_kind_near_and_far(name: str) -> None:
+    """An input, a sum, a constant, and one with a sine in it; needed alone, as outputs and by others."""
+
+    def outputs(graph: Graph, q: Sequence[int]) -> list[int]:
+        both = graph.add(q[0], graph.mul(q[1], graph.constant(3.0)))
+        inner = graph.function(Op.COS, both)
+        fixed = graph.add(graph.constant(0.7), graph.constant(0.0))
+        nested = graph.function(Op.SIN, graph.mul(inner, graph.constant(5.0)))
+        alone = graph.function(Op.SIN, q[1])
+        return [
+            inner,
+            nested,
+            alone,
+            graph.mul(graph.function(Op.SIN, fixed), alone),
+            graph.function(Op.SIN, both),
+            both,
+        ]
+
+    q = np.random.default_rng(3).uniform(-3, 3, (37, 2))
+    q[::5] *= 1e6
+    q[3] = 3e5, 0.1
+    found, bad = ran(name, program(outputs, 2), q)
+    both = q[:, 0] + q[:, 1] * 3.0
+    fused = np.array([float(Fraction(x) + Fraction(y) * 3) for x, y in q])
+    assert not bad
+    for angle in (both, fused):  # emitters differ in whether the sum is rounded once
+        inner, alone = np.cos(angle), np.sin(q[:, 1])
+        wanted = np.transpose([inner, np.sin(5.0 * inner), alone, np.sin(0.7) * alone, np.sin(angle), angle])
+        if norm_error(found, wanted) <= ROUNDING:
+            return
+    raise AssertionError(found - wanted)
 
 
 def test_a_robot_that_cannot_move(name: str) -> None:

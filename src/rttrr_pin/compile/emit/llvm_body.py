@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from rttrr_pin.compile.emit.llvm_angles import LIBRARY, mend, mending
 from rttrr_pin.compile.emit.llvm_vectors import Layout, Lines, VectorCode, declarations, loop
-from rttrr_pin.compile.expression import Op
+from rttrr_pin.compile.expression import LEAVES, Op
 from rttrr_pin.compile.program import Program
 
 SEGMENT = 700
@@ -26,12 +27,12 @@ def body(program: Program, layout: Layout) -> tuple[str, int]:
     texts = [_segment(program, layout, k, part, passed) for k, part in enumerate(parts)]
     arguments = "ptr %in, ptr %out, ptr %between, i64 %m"
     whole = _by_vectors(layout, len(parts)) if layout.short else _by_segments(arguments, len(parts))
-    return "\n".join([*declarations(layout), *texts, whole, *_fill(program, layout)]), len(passed)
+    return "\n".join([*declarations(layout), *mending(layout), *texts, whole, *_fill(program, layout)]), len(passed)
 
 
 def is_short(program: Program) -> bool:
-    """Whether all operations together stay in the instruction cache."""
-    return len(_segments(program)) == 1
+    """Whether all operations but sines and cosines together stay in the instruction cache."""
+    return len(_segments(program)) == 2
 
 
 def _by_segments(arguments: str, count: int) -> str:
@@ -65,13 +66,24 @@ def _fill(program: Program, layout: Layout) -> Iterator[str]:
 
 
 def _segments(program: Program) -> list[list[int]]:
-    """The operations in order, cut into loops of about equal length."""
+    """The operations in order, cut into parts: sines and cosines, and parts of about equal length."""
     op = program.graph.op
-    todo = [x for x in program.order if op[x] not in (Op.CONSTANT, Op.INPUT)]
+    angles = _angles(program)
+    todo = [x for x in program.order if op[x] not in (Op.CONSTANT, Op.INPUT) and x not in angles]
     count = max(1, -(-len(todo) // SEGMENT))
     size = -(-len(todo) // count) or 1
     parts = [todo[start : start + size] for start in range(0, len(todo), size)] or [[]]
-    return _angles_together(program, parts)
+    return [[x for x in program.order if x in angles], *_angles_together(program, parts)]
+
+
+def _angles(program: Program) -> set[int]:
+    """Sines and cosines, and what their angles take, but for those whose angle has a sine in it or never changes."""
+    graph = program.graph
+    turns = {x: set(graph.reachable([graph.args[x][0]])) for x in program.order if graph.op[x] in LIBRARY}
+    others = {Op.CONSTANT, *LIBRARY}
+    plain = [x for x, inside in turns.items() if graph.op[graph.args[x][0]] not in others]
+    plain = [x for x in plain if not any(graph.op[y] in LIBRARY for y in turns[x])]
+    return {y for x in plain for y in (x, *turns[x]) if graph.op[y] not in LEAVES}
 
 
 def _angles_together(program: Program, parts: list[list[int]]) -> list[list[int]]:
@@ -82,7 +94,7 @@ def _angles_together(program: Program, parts: list[list[int]]) -> list[list[int]
     moved: list[list[int]] = [[] for _ in parts]
     for k, part in enumerate(parts):
         for x in part:
-            home = first.setdefault(args[x][0], k) if op[x] in (Op.SIN, Op.COS) else k
+            home = first.setdefault(args[x][0], k) if op[x] in LIBRARY else k
             moved[home].append(x)
     return moved
 
@@ -96,23 +108,29 @@ def _passed(program: Program, parts: list[list[int]]) -> dict[int, int]:
             for y in program.graph.args[x]:
                 if y in home:
                     last[y] = max(last[y], k)
-    needed = sorted(x for x in home if last[x] > home[x])
-    return {x: column for column, x in enumerate(needed)}
+    # In the first segment sines and cosines are mended in memory, with their angles: others store its results.
+    mended = {y for x in parts[0] if program.graph.op[x] in LIBRARY for y in (x, program.graph.args[x][0])}
+    needed = [x for x in home if last[x] > home[x] or x in mended or (x in program.results and home[x] == 0)]
+    return {x: column for column, x in enumerate(sorted(needed))}
 
 
 def _segment(program: Program, layout: Layout, k: int, part: list[int], passed: dict[int, int]) -> str:
-    """One loop."""
+    """One of the straight lines, with the results of its operations; the second has those of the first as well."""
     lines = layout.lines()
     writer = VectorCode(program, layout, lines, passed)
+    inside = set(part)
     for x in part:
-        writer.compute(x)
+        if k == 0 and program.graph.op[x] in LIBRARY:
+            writer.near(x)
+        else:
+            writer.compute(x)
         if x in passed:
             lines.do(f"store {lines.vector} {writer.value[x]}, ptr {lines.at('%b', passed[x] * layout.pitch)}")
-    results = list(enumerate(program.results))
-    inside = set(part)
-    first = k == 0
-    for column, x in results:
-        if x in inside or (first and program.graph.op[x] is Op.INPUT):
+    if k == 0:
+        mend(writer, [x for x in part if program.graph.op[x] in LIBRARY])
+    early = {*_angles(program), *(x for x in program.results if program.graph.op[x] is Op.INPUT)} if k == 1 else set()
+    for column, x in enumerate(program.results):
+        if k and (x in inside or x in early):
             lines.do(f"store {lines.vector} {writer.get(x)}, ptr {lines.at('%o', column * layout.pitch)}")
     if not layout.short:
         return _loop(f"segment_{k}", layout, lines, writer.label)

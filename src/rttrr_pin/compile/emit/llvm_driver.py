@@ -19,8 +19,9 @@ from llvmlite import ir
 
 from rttrr_pin.compile.call_program import CallProgram
 from rttrr_pin.compile.emit import RECORD
-from rttrr_pin.compile.emit.llvm_columns import Columns, Record, Sound, block_in, block_out, pack, unpack
+from rttrr_pin.compile.emit.llvm_columns import Record, block_in, block_out, pack, unpack
 from rttrr_pin.compile.emit.llvm_python import python_entry
+from rttrr_pin.compile.emit.llvm_tiles import Columns, Sound
 from rttrr_pin.compile.emit.llvm_vectors import LINE, Layout
 from rttrr_pin.compile.emit.llvm_writer import I1, I64, PTR, SCALAR, function, number
 from rttrr_pin.compile.fields import Field

@@ -19,8 +19,9 @@ from rttrr_pin.compile.program import Program
 BLOCK = 64
 """States in a block."""
 
-FIRST_LEVEL = 24 * 1024
-"""Bytes that a block's inputs and outputs may take, to stay in the first level of the cache with room for the rest."""
+NEAR = 48 * 1024
+"""Bytes that a block's inputs and outputs may take: what a segment has of them stays in the first level of the cache,
+and its code, read once for each block, costs little."""
 
 SECOND_LEVEL = 512 * 1024
 """Bytes that all columns of a block may take in a schedule, which goes through them twice."""
@@ -56,6 +57,6 @@ def _layout(program: Program | CallProgram, lanes: int) -> Layout:
     if isinstance(program, CallProgram):
         room, width = SECOND_LEVEL, program.columns
     else:
-        room, width = FIRST_LEVEL, program.width_in + program.width_out
+        room, width = NEAR, program.width_in + program.width_out
     block = min(BLOCK, max(lanes, room // (program.float_type.size * max(width, 1)) // lanes * lanes))
     return Layout(lanes, block, block + lanes, program.float_type)

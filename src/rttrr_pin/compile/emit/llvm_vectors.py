@@ -9,10 +9,10 @@ import struct
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
+from rttrr_pin.compile.emit.llvm_angles import beyond, library, polynomials, some
 from rttrr_pin.compile.expression import FUSED, Op
 from rttrr_pin.compile.float_type import FLOAT64, FloatType
 from rttrr_pin.compile.program import Program
-from rttrr_pin.compile.sincos import sincos_in
 
 FAR = 2.0**-500
 """Below it, and above its inverse, squares may leave the normal numbers of float64."""
@@ -232,21 +232,25 @@ class VectorCode:
         sign = lines(f"select {mask} {above}, {v} {lines.splat(1.0)}, {v} {negative}")
         return lines.op("fadd", sign, lines.op("fmul", x, lines.splat(0.0)))
 
+    def near(self, x: int) -> None:
+        """A sine or cosine by the polynomials alone; see `llvm_angles.mend`."""
+        angle = self.program.graph.args[x][0]
+        if angle not in self.angles:
+            self.angles[angle] = polynomials(self.lines, self.get(angle))
+        self.value[x] = self.angles[angle][0 if self.program.graph.op[x] is Op.SIN else 1]
+
     def _sincos(self, q: str) -> tuple[str, str]:
         """Sine and cosine, by the polynomials; angles beyond their range are done over by the C library."""
         lines = self.lines
         s, c = polynomials(lines, q)
-        size = lines(f"call {lines.vector} @llvm.fabs.{lines.suffix}({lines.vector} {q})")
-        largest = lines.splat(sincos_in(lines.float_type).largest)
-        beyond = lines(f"fcmp ugt {lines.vector} {size}, {largest}")  # also NaN
-        some = lines(f"bitcast <{lines.lanes} x i1> {beyond} to i{lines.lanes}")
-        any_ = lines(f"icmp ne i{lines.lanes} {some}, 0")
+        far = beyond(lines, q)
+        any_ = some(lines, far)
         # The polynomials are computed in any case; the calls are skipped where no lane needs them, as for the angles of
         # any robot. Values of both ways meet in a phi, which must name the blocks that they come from.
         n, before = lines.count, self.label
         lines.do(f"br i1 {any_}, label %far{n}, label %near{n}")
         lines.text.append(f"far{n}:")
-        exact = [self._library(q, beyond, old, name) for name, old in (("sin", s), ("cos", c))]
+        exact = [library(lines, name, q, far, old) for name, old in (("sin", s), ("cos", c))]
         lines.do(f"br label %near{n}")
         lines.text.append(f"near{n}:")
         self.label = f"near{n}"
@@ -255,18 +259,6 @@ class VectorCode:
             lines(f"phi {v} [ {old}, %{before} ], [ {new}, %far{n} ]") for old, new in zip((s, c), exact, strict=True)
         ]
         return merged[0], merged[1]
-
-    def _library(self, q: str, beyond: str, old: str, name: str) -> str:
-        """The C library's function in the lanes that lie beyond."""
-        lines, v, own = self.lines, self.lines.vector, self.lines.float_type.c_name
-        new = old
-        for lane in range(lines.lanes):
-            x = lines(f"extractelement {v} {q}, i32 {lane}")
-            x = x if own == "double" else lines(f"fpext {own} {x} to double")
-            y = lines(f"call double @{name}(double {x})")
-            y = y if own == "double" else lines(f"fptrunc double {y} to {own}")
-            new = lines(f"insertelement {v} {new}, {own} {y}, i32 {lane}")
-        return lines(f"select <{lines.lanes} x i1> {beyond}, {v} {new}, {v} {old}")
 
 
 def _norm(lines: Lines, parts: list[str]) -> str:
@@ -285,49 +277,3 @@ def _norm(lines: Lines, parts: list[str]) -> str:
     squares = [lines.op("fmul", x, x) for x in scaled]
     total = lines.op("fadd", lines.op("fadd", squares[0], squares[1]), squares[2])
     return lines.op("fmul", lines.function("sqrt", total), up)
-
-
-def polynomials(lines: Lines, q: str) -> tuple[str, str]:
-    """Sine and cosine for |q| up to `largest`; see `rttrr_pin.compile.sincos`."""
-    splat, fma, op, bits, numbers = lines.splat, lines.fma, lines.op, lines.bits, sincos_in(lines.float_type)
-    # Adding `round` rounds to an integer, whose last bits then are the quadrant: no conversion, and no branch.
-    shifted = fma(q, splat(numbers.two_over_pi), splat(numbers.round))
-    k = op("fsub", splat(numbers.round), shifted)  # minus the multiple of pi/2
-    t = fma(k, splat(numbers.pio2[0]), q)
-    second = op("fmul", k, splat(numbers.pio2[1]))
-    r = op("fadd", t, second)
-    lost = op("fsub", second, op("fsub", r, t))
-    rest = fma(k, splat(numbers.pio2[2]), fma(k, splat(numbers.pio2[1]), lines.negated(second)))
-    low = op("fadd", lost, rest)
-    z = op("fmul", r, r)
-    sine, cosine = (_horner(lines, z, terms) for terms in (numbers.sine, numbers.cosine))
-    s = op("fadd", r, fma(op("fmul", r, z), sine, low))
-    half = op("fmul", z, splat(0.5))
-    w = op("fsub", splat(1.0), half)
-    over = op("fsub", op("fsub", splat(1.0), w), half)
-    tail = fma(op("fmul", z, z), cosine, over)
-    c = op("fadd", w, fma(lines.negated(r), low, tail))
-    top = lines.whole(lines.float_type.bits - 1)
-    quadrant = lines(f"bitcast {lines.vector} {shifted} to {lines.integers}")
-    odd = lines(f"icmp slt {lines.integers} {bits('shl', quadrant, top)}, {lines.whole(0)}")
-    mask, v = f"<{lines.lanes} x i1>", lines.vector
-    # Odd quadrants exchange sine and cosine; the second bit of k, of k + 1 for the cosine, is the sign.
-    flips = [
-        bits("shl", bits("lshr", n, lines.whole(1)), top) for n in (quadrant, bits("add", quadrant, lines.whole(1)))
-    ]
-    pair = (f"{v} {c}, {v} {s}", f"{v} {s}, {v} {c}")
-    chosen = [lines(f"select {mask} {odd}, {both}") for both in pair]
-    s, c = (_sign_flipped(lines, x, flip) for x, flip in zip(chosen, flips, strict=True))
-    return s, c
-
-
-def _sign_flipped(lines: Lines, x: str, flip: str) -> str:
-    bits = lines.bits("xor", lines(f"bitcast {lines.vector} {x} to {lines.integers}"), flip)
-    return lines(f"bitcast {lines.integers} {bits} to {lines.vector}")
-
-
-def _horner(lines: Lines, z: str, terms: tuple[float, ...]) -> str:
-    value = lines.splat(terms[-1])
-    for term in reversed(terms[:-1]):
-        value = lines.fma(value, z, lines.splat(term))
-    return value
