@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from hypothesis import strategies as st
 import rttrr_pin
 from rttrr_pin import RandomPayload, Robot
 from rttrr_pin.errors import InputError, UnknownNameError
+from rttrr_pin.implementations import Batch
 from rttrr_pin.validation import SAMPLINGS, Sampler
 from support.serial_chains import EXAMPLES
 
@@ -28,6 +30,22 @@ def test_state_k_is_the_same_however_the_work_is_cut(
         np.testing.assert_array_equal(getattr(together, name)[k], getattr(alone, name)[0])
     np.testing.assert_array_equal(together.loads[0].f[k], alone.loads[0].f[0])
     np.testing.assert_array_equal(together.loads[0].n[k], alone.loads[0].n[0])
+
+
+@pytest.mark.parametrize("sampling", SAMPLINGS)
+@pytest.mark.parametrize("base", ["fixed", "floating"])
+@given(first=st.integers(0, 10**9), cuts=st.lists(st.integers(1, 70), max_size=6))
+def test_blocks_behind_each_other_are_the_states(sampling: str, base: Any, first: int, cuts: list[int]) -> None:
+    sampler = Sampler(rttrr_pin.load("rttrr", base=base).model, sampling, 3, RandomPayload("tool"))
+    edges = [0, *sorted({*cuts}), 71]
+    together = _numbers(sampler.draw(first, 71))
+    parts = [_numbers(sampler.draw(first + start, stop - start)) for start, stop in pairwise(edges)]
+    for x, own in zip(together, zip(*parts, strict=True), strict=True):
+        np.testing.assert_array_equal(x, np.concatenate(own))
+
+
+def _numbers(batch: Batch) -> list[Any]:
+    return [batch.q, batch.v, batch.a, batch.loads[0].f, batch.loads[0].n]
 
 
 def test_a_payload_does_not_change_the_states(rttrr: Robot) -> None:

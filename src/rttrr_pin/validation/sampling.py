@@ -74,30 +74,30 @@ Sampling = Callable[[Array, Indices, Ranges], Triple]
 
 def _uniform(unit: Array, k: Indices, ranges: Ranges) -> Triple:
     """Every coordinate, rate and acceleration uniform within its range."""
-    q, v, a = np.split(unit, 3, axis=1)
-    at = ranges.lower + q * (ranges.upper - ranges.lower)
-    return at, (2 * v - 1) * ranges.rate, (2 * a - 1) * ACCELERATION
+    q, v, a = np.split(unit, 3)
+    lower, upper, rate = (x[:, None] for x in (ranges.lower, ranges.upper, ranges.rate))
+    return lower + q * (upper - lower), (2 * v - 1) * rate, (2 * a - 1) * ACCELERATION
 
 
 def _corners(unit: Array, k: Indices, ranges: Ranges) -> Triple:
     """Each at its lower end, zero, or its upper end; angles also at plus or minus a right angle. All within limits."""
-    q, v, a = np.split(unit, 3, axis=1)
+    q, v, a = np.split(unit, 3)
     zero = np.zeros_like(ranges.lower)
     right = np.where(ranges.angle, math.pi / 2, 0.0)
     corners = np.clip(np.stack([ranges.lower, ranges.upper, zero, right, -right]), ranges.lower, ranges.upper)
-    at = corners[(q * len(corners)).astype(int), np.arange(len(zero))]
-    return at, (np.floor(3 * v) - 1) * ranges.rate, (np.floor(3 * a) - 1) * ACCELERATION
+    at = np.take_along_axis(corners.T, (q * len(corners)).astype(int), axis=1)
+    return at, (np.floor(3 * v) - 1) * ranges.rate[:, None], (np.floor(3 * a) - 1) * ACCELERATION
 
 
 def _zeros(unit: Array, k: Indices, ranges: Ranges) -> Triple:
     """State k has zero q, v and a as the bits of k mod 8 say; the rest is uniform. State 7 is all zeros."""
-    q, v, a = (x * ((k >> bit & 1) == 0)[:, None] for bit, x in enumerate(_uniform(unit, k, ranges)))
+    q, v, a = (x * ((k >> bit & 1) == 0) for bit, x in enumerate(_uniform(unit, k, ranges)))
     return q, v, a
 
 
 def _one_joint(unit: Array, k: Indices, ranges: Ranges) -> Triple:
     """Joint k mod nv at a uniform state, the others at zero and at rest."""
-    moving = np.arange(len(ranges.lower)) == (k % max(len(ranges.lower), 1))[:, None]
+    moving = np.arange(len(ranges.lower))[:, None] == k % max(len(ranges.lower), 1)
     q, v, a = (x * moving for x in _uniform(unit, k, ranges))
     return q, v, a
 
@@ -110,9 +110,11 @@ def _large_velocities(unit: Array, k: Indices, ranges: Ranges) -> Triple:
 
 def _mixed(unit: Array, k: Indices, ranges: Ranges) -> Triple:
     """State k by the sampling k mod 5."""
-    turn = k % 5
-    triples = [sampling(unit, k // 5, ranges) for sampling in list(SAMPLINGS.values())[:5]]
-    q, v, a = (np.choose(turn[:, None], parts) for parts in zip(*triples, strict=True))
+    out = np.empty_like(unit)
+    for turn, sampling in enumerate(list(SAMPLINGS.values())[:5]):
+        own = np.flatnonzero(k % 5 == turn)
+        out[:, own] = np.concatenate(sampling(unit[:, own], k[own] // 5, ranges))
+    q, v, a = np.split(out, 3)
     return q, v, a
 
 
@@ -124,7 +126,7 @@ SAMPLINGS: dict[str, Sampling] = {
     "large-velocities": _large_velocities,
     "mixed": _mixed,
 }
-"""How states are drawn, by name: from numbers in [0, 1), (N, 3 nv), and the indices of the states."""
+"""How states are drawn, by name: from columns of numbers in [0, 1), (3 nv, N), and the indices of the states."""
 
 
 class Sampler:
@@ -177,7 +179,8 @@ class Sampler:
         """The states that numbers in [0, 1] stand for, (N, `numbers`) or wider, counted from `first`."""
         nv = self.model.nv
         k = first + np.arange(len(unit), dtype=np.int64)
-        q, v, a = SAMPLINGS[self.sampling](unit[:, : 3 * nv], k, self._ranges)
+        columns = np.ascontiguousarray(unit[:, : 3 * nv].T)
+        q, v, a = (np.ascontiguousarray(x.T) for x in SAMPLINGS[self.sampling](columns, k, self._ranges))
         loads = self._loads(2 * unit[:, 3 * nv : 3 * nv + 6] - 1)
         return Batch(self.model, self.model.coordinates_at(q), v, a, loads, first)
 
