@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from functools import cache
 from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import rttrr_pin
 from rttrr_pin import RandomPayload, Robot
+from rttrr_pin.core.model import Model
 from rttrr_pin.errors import InputError, UnknownNameError
 from rttrr_pin.implementations import Batch
 from rttrr_pin.validation import SAMPLINGS, Sampler
@@ -34,14 +36,20 @@ def test_state_k_is_the_same_however_the_work_is_cut(
 
 @pytest.mark.parametrize("sampling", SAMPLINGS)
 @pytest.mark.parametrize("base", ["fixed", "floating"])
+@settings(max_examples=20)
 @given(first=st.integers(0, 10**9), cuts=st.lists(st.integers(1, 70), max_size=6))
 def test_blocks_behind_each_other_are_the_states(sampling: str, base: Any, first: int, cuts: list[int]) -> None:
-    sampler = Sampler(rttrr_pin.load("rttrr", base=base).model, sampling, 3, RandomPayload("tool"))
+    sampler = Sampler(_on_base(base), sampling, 3, RandomPayload("tool"))
     edges = [0, *sorted({*cuts}), 71]
     together = _numbers(sampler.draw(first, 71))
     parts = [_numbers(sampler.draw(first + start, stop - start)) for start, stop in pairwise(edges)]
     for x, own in zip(together, zip(*parts, strict=True), strict=True):
         np.testing.assert_array_equal(x, np.concatenate(own))
+
+
+@cache
+def _on_base(base: Any) -> Model:
+    return rttrr_pin.load("rttrr", base=base).model
 
 
 def _numbers(batch: Batch) -> list[Any]:

@@ -54,21 +54,22 @@ def test_no_worst_error_is_beyond_500_eps(robot: Robot) -> None:
 @pytest.mark.parametrize("size", [1e-9, 1.0, np.nan, np.inf])
 @pytest.mark.parametrize("side", ["subject", "reference"])
 def test_one_wrong_number_in_one_state_is_found_and_located(
-    rttrr: Robot, quantity: str, size: float, side: str
+    rttrr: Robot, monkeypatch: pytest.MonkeyPatch, quantity: str, size: float, side: str
 ) -> None:
     """In a later block, at one link, in one state of many."""
+    monkeypatch.setattr("rttrr_pin.validation.states.BLOCK", 300)
 
     def spoil(values: dict[str, Any], batch: Batch) -> None:
-        if batch.first <= 1300 < batch.first + len(batch):
-            k = 1300 - batch.first
+        if batch.first <= 700 < batch.first + len(batch):
+            k = 700 - batch.first
             values[quantity][(k, 3) if quantity == "tau" else (k, 3, 1)] += size
 
     sides = {"subject": "kernel", "reference": "pinocchio"}
-    result = validate(rttrr, **sides | {side: altered(rttrr, spoil, sides[side])}, n_states=1400)
+    result = validate(rttrr, **sides | {side: altered(rttrr, spoil, sides[side])}, n_states=800)
     at = "joint_4" if quantity == "tau" else "link_4"
     if quantity == "n":  # tau is compared with the norm of n, so that a wild n leaves tau's verdict alone
         assert ("tau", at) not in outcome(result)
-    assert outcome(result) == {(quantity, at): (1, 1300)}
+    assert outcome(result) == {(quantity, at): (1, 700)}
     assert not result.passed and result.failing == 1 and result.worst is not None
     assert (result.worst.quantity, result.worst.at) == (quantity, at)
 
@@ -79,11 +80,15 @@ def test_a_systematic_error_of_a_few_eps_of_the_norm_is_not_hidden(rttrr: Robot)
     assert {at for _, at in outcome(validate(rttrr, reference=wrong, n_states=200))} == set(rttrr.joint_names)
 
 
-def test_the_outcome_does_not_depend_on_blocks(rttrr: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(("name", "size"), [("BLOCK", 60), ("NUMBERS", 60 * 77)])
+def test_the_outcome_does_not_depend_on_blocks(
+    rttrr: Robot, monkeypatch: pytest.MonkeyPatch, name: str, size: int
+) -> None:
+    """Of so many states, or of so many numbers, of which a state of the arm has 77."""
     whole = validate(rttrr, n_states=700, payload=RandomPayload())
-    monkeypatch.setattr("rttrr_pin.validation.states.BLOCK", 64)
+    monkeypatch.setattr(f"rttrr_pin.validation.states.{name}", size)
     cut = validate(rttrr, n_states=700, payload=RandomPayload())
-    assert whole.rows == cut.rows
+    assert (whole.rows, whole.whole, whole.adjudications) == (cut.rows, cut.whole, cut.adjudications)
 
 
 def test_a_longer_run_begins_with_the_shorter(rttrr: Robot) -> None:
@@ -107,7 +112,8 @@ def test_the_worst_state_can_be_had_again(rttrr: Robot, subject: str) -> None:
     assert one.passed
 
 
-def test_progress_counts_to_the_end(rttrr: Robot) -> None:
+def test_progress_counts_to_the_end(rttrr: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("rttrr_pin.validation.states.BLOCK", 1000)
     seen: list[int] = []
     validate(rttrr, n_states=2100, progress=seen.append)
     assert seen[-1] == 2100 and seen == sorted(seen) and len(seen) > 1

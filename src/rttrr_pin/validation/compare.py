@@ -217,8 +217,8 @@ class Comparison:
                 row.failures += failures
         self._see_relative(difference, batch.first)
         for key, places in self._places.items():
-            x, y = (side.values[key].reshape(len(batch), -1) for side in (subject, reference))
-            _see_whole(self.whole[key], x, y, difference.at(places), batch.first, sizes_are_of_y=key != "tau")
+            x, y = subject.values[key], reference.values[key]
+            _see_whole(self.whole[key], x, y, difference.at(places), batch.first)
         return ratios
 
     def _see_relative(self, difference: Difference, first: int) -> None:
@@ -281,18 +281,18 @@ def _trusted(limits: Array) -> Array:
     return np.where((limits > LOST) & (limits < np.inf), limits, 0.0)
 
 
-def _see_whole(worst: Worst, x: Array, y: Array, rows: Difference, first: int, sizes_are_of_y: bool) -> None:
-    """Take in the relative errors of consecutive states in the norm over all places; x and y are (N, numbers).
+def _see_whole(worst: Worst, x: Array, y: Array, rows: Difference, first: int) -> None:
+    """Take in the relative errors of consecutive states in the norm over all places; x and y are (N, places, ...).
 
     Squares of the norms at each place say in which states it may be larger than the largest so far.
     """
-    sides = rows.error, rows.size if sizes_are_of_y else y.T
+    sides = rows.error, y.T if y.ndim == 2 else rows.size  # driving forces have other sizes in their rows
     error, size = (np.einsum("ij,ij->j", side, side) for side in sides)
     limit = np.square(_at_most(worst, first)) * size
     states = np.flatnonzero(error >= _trusted(limit))
     states = states[rows.error[:, states].any(axis=0)]
     if len(states):
-        x, y = x[states], y[states]
+        x, y = (side[states].reshape(len(states), -1) for side in (x, y))
         whole = Difference(_finite_or(norm(x - y), np.inf), norm(y), norm(rows.tolerance[:, states].T))
         values = whole.known_relative
         k = int(np.argmax(values))
