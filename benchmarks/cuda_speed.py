@@ -69,10 +69,8 @@ class OnCard:
 
     def columns(self, x: np.ndarray) -> Any:
         """The transpose (N, n) of an array (n, N) on the card."""
+        buffer = self.copied(x.T).exporting_obj
         view = self.core.utils.StridedMemoryView
-        buffer = self.core.Device().allocate(x.nbytes, stream=self.stream)
-        flat = view.from_buffer(buffer, x.shape[::-1], itemsize=x.itemsize, dtype=x.dtype)
-        flat.copy_from(view.from_array_interface(np.ascontiguousarray(x.T)), self.stream, blocking=True)
         return view.from_buffer(buffer, x.shape, (1, len(x)), itemsize=x.itemsize, dtype=x.dtype)
 
     def empty(self, shape: tuple[int, ...], dtype: str) -> Any:
@@ -82,7 +80,9 @@ class OnCard:
     def on_host(self, x: Any, shape: tuple[int, ...], dtype: str) -> np.ndarray:
         """The numbers of an array of rows."""
         host = np.empty(shape, dtype)
-        self.core.utils.StridedMemoryView.from_array_interface(host).copy_from(x, self.stream, blocking=True)
+        target = self.core.Buffer.from_handle(host.ctypes.data, host.nbytes, owner=host)
+        x.exporting_obj.copy_to(target, stream=self.stream)
+        self.stream.sync()
         return host
 
     def seconds(self, run: Callable[[], object], times: int) -> float:

@@ -143,7 +143,7 @@ class CpuDriver:
 
     def _view(self, x: np.ndarray, device: int, writable: bool) -> View:
         strides = tuple(stride // x.itemsize for stride in x.strides)
-        return View(x.ctypes.data, x.shape, strides, x.dtype.name, device, writable)
+        return View(x.ctypes.data, x.shape, strides, x.dtype, device, writable)
 
     def empty(self, shape: tuple[int, ...], dtype: str, stream: Any) -> OnCard:
         return OnCard(np.full(shape, 7.0, dtype=dtype))

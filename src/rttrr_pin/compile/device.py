@@ -156,7 +156,7 @@ class DeviceKernel:
         return [x for x in arrays if x is not None]
 
     def _view(self, name: str, x: Any, stream: Any, written: bool = False) -> View:
-        return looked_at(self._driver, name, x, stream, self._float_type.name, written)
+        return looked_at(self._driver, name, x, stream, self.dtype, written)
 
     def _results(self, variant: Variant, out: Any, batch: tuple[int, ...], stream: Any) -> list[Any]:
         """The arrays to write, new ones where none are passed."""
@@ -170,13 +170,18 @@ class DeviceKernel:
         return [out[field.name] for field in variant.outputs]
 
     def _check_apart(self, variant: Variant, inputs: list[Placed], targets: list[Placed], rows: int) -> None:
-        """Results may lie number by number over an input, and over nothing else that is read or written."""
-        own = list(zip((*variant.inputs, *variant.outputs), (*inputs, *targets), strict=True))
-        for k, (field, target) in enumerate(own[len(inputs) :], start=len(inputs)):
-            for other, x in own[:k]:
-                same = other in variant.inputs and x == target and other.width == field.width
-                if not same and target.overlaps(x, rows, (field.width, other.width), self._float_type.size):
-                    raise InputError(f"out for {field.name} shares memory with {other.name}: pass an array of its own")
+        """Results may lie number by number over an input, but not between the addresses of anything else."""
+        fields, arrays, size = (*variant.inputs, *variant.outputs), (*inputs, *targets), self._float_type.size
+        ranges = [x.range(rows, field.width, size) for field, x in zip(fields, arrays, strict=True)]
+        for k in range(len(inputs), len(fields)):
+            for other in range(k):
+                over_input = other < len(inputs) and arrays[k] == arrays[other]
+                if over_input and fields[k].width == fields[other].width:
+                    continue
+                if ranges[k][0] < ranges[other][1] and ranges[other][0] < ranges[k][1]:
+                    raise InputError(
+                        f"out for {fields[k].name} shares memory with {fields[other].name}: pass an array of its own"
+                    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from math import prod
 from typing import Any
 
+import numpy as np
+
 from rttrr_pin.compile.arrays import even
 from rttrr_pin.compile.emit.cuda_driver import Driver, View
 from rttrr_pin.compile.fields import Field
@@ -26,21 +28,16 @@ class Placed:
     row: int
     column: int
 
-    def overlaps(self, other: Placed, rows: int, widths: tuple[int, int], size: int) -> bool:
-        """Whether two arrays lie between the same addresses; where their columns interleave, too."""
-        if not rows or 0 in widths:
-            return False
-        (low, high), (first, last) = (x.range(rows, w, size) for x, w in zip((self, other), widths, strict=True))
-        return low < last and first < high
-
     def range(self, rows: int, width: int, size: int) -> tuple[int, int]:
-        """The addresses between which all its numbers lie."""
-        far = ((rows - 1) * self.row, (width - 1) * self.column)
-        low, high = (sum(part(0, distance) for distance in far) for part in (min, max))
+        """The addresses between which all its numbers lie, of so many bytes each; of none, an empty range."""
+        if not rows or not width:
+            return self.address, self.address
+        down, right = (rows - 1) * self.row, (width - 1) * self.column
+        low, high = min(down, 0) + min(right, 0), max(down, 0) + max(right, 0)
         return self.address + low * size, self.address + (high + 1) * size
 
 
-def looked_at(driver: Driver, name: str, x: Any, stream: Any, dtype: str, written: bool = False) -> View:
+def looked_at(driver: Driver, name: str, x: Any, stream: Any, dtype: np.dtype[Any], written: bool = False) -> View:
     """An array as it lies on the card.
 
     Raises:

@@ -7,6 +7,7 @@ import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from math import prod
 from typing import Any, Protocol
 
 import numpy as np
@@ -26,7 +27,7 @@ class View:
         address: of its first number.
         shape: its lengths.
         strides: the distances along its axes, in numbers.
-        dtype: of its numbers, by NumPy's name.
+        dtype: of its numbers.
         device: the card that it is on; -1 for memory of the host.
         writable: whether results may be written there.
     """
@@ -34,7 +35,7 @@ class View:
     address: int
     shape: tuple[int, ...]
     strides: tuple[int, ...]
-    dtype: str
+    dtype: np.dtype[Any]
     device: int
     writable: bool
 
@@ -145,20 +146,23 @@ class CudaCore:
         seen = self._core.utils.StridedMemoryView.from_any_interface(x, stream_ptr=int(stream.handle))
         shape, strides = tuple(seen.shape), seen.strides
         if strides is None:
-            strides = tuple(int(np.prod(shape[k + 1 :])) for k in range(len(shape)))
+            strides = tuple(prod(shape[k + 1 :]) for k in range(len(shape)))
         device = seen.device_id if seen.is_device_accessible else -1
-        return View(seen.ptr, shape, tuple(strides), str(seen.dtype), device, not seen.readonly)
+        return View(seen.ptr, shape, tuple(strides), seen.dtype, device, not seen.readonly)
 
     def empty(self, shape: tuple[int, ...], dtype: str, stream: Any) -> Any:
         """See `Driver`."""
         own = np.dtype(dtype)
-        buffer = self._card.allocate(max(1, int(np.prod(shape))) * own.itemsize, stream=stream)
+        buffer = self._card.allocate(max(1, prod(shape)) * own.itemsize, stream=stream)
         return self._core.utils.StridedMemoryView.from_buffer(buffer, shape, itemsize=own.itemsize, dtype=own)
 
     def copied(self, x: NDArray[Any], stream: Any) -> Any:
-        """See `Driver`."""
+        """See `Driver`; waits, since the array of the host may go."""
+        host = np.ascontiguousarray(x)
         array = self.empty(x.shape, x.dtype.name, stream)
-        array.copy_from(self._core.utils.StridedMemoryView.from_array_interface(x), stream, blocking=True)
+        source = self._core.Buffer.from_handle(host.ctypes.data, host.nbytes, owner=host)
+        array.exporting_obj.copy_from(source, stream=stream)
+        stream.sync()
         return array
 
     def flag(self) -> ctypes.c_ulonglong:
