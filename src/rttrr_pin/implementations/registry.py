@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 BUILT_IN = {
     "kernel": "rttrr_pin.implementations.own:CompiledKernel",
+    "kernel32": "rttrr_pin.implementations.kernel32:Kernel32",
     "recursion": "rttrr_pin.implementations.own:Recursion",
     "pinocchio": "rttrr_pin.implementations.pinocchio:Pinocchio",
     "mujoco": "rttrr_pin.implementations.mujoco:Mujoco",
