@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import subprocess
 import sys
 from typing import Any
@@ -60,6 +61,15 @@ def test_batches_of_any_shape(kernel: DeviceKernel, rttrr: Robot, batch: tuple[i
     found = kernel(*there(*arrays))
     np.testing.assert_array_equal(found.array, rttrr.compile()(*arrays))
     assert found.array.shape == (*batch, 5)
+
+
+def test_a_copy_is_a_kernel_of_the_current_card(rttrr: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(cuda, "CudaCore", CpuDriver)
+    kernel = rttrr.compile(("tau",), emitter="cuda", dtype="float32")
+    assert rttrr.compile(("tau",), emitter="cuda", dtype="float32") is kernel
+    again = pickle.loads(pickle.dumps(kernel))
+    arrays = there(*(x.astype(np.float32) for x in states(STATES)))
+    np.testing.assert_array_equal(again(*arrays)["tau"].array, kernel(*arrays)["tau"].array)
 
 
 def test_float32(rttrr: Robot, card: CpuDriver) -> None:
