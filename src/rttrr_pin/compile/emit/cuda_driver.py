@@ -18,6 +18,9 @@ from rttrr_pin.errors import InputError
 NONE = 2**64 - 1
 """In a flag: all is finite."""
 
+FLAGS = 512
+"""Flags of one piece of pinned memory, which is had by pages."""
+
 
 @dataclass(frozen=True, slots=True)
 class View:
@@ -122,7 +125,8 @@ class CudaCore:
         self.name, self.device = card.name, int(card.device_id)
         self.identity = f"cuda nvrtc {version} sm_{card.arch}"
         self._pinned = core.LegacyPinnedMemoryResource()
-        self._flags: list[Any] = []
+        self._pages: list[Any] = []
+        self._free: list[int] = []  # addresses of flags
 
     def compile(self, text: str) -> bytes:
         """See `Driver`."""
@@ -167,9 +171,12 @@ class CudaCore:
 
     def flag(self) -> ctypes.c_ulonglong:
         """See `Driver`: pinned memory, which a kernel writes to only where a number is not finite."""
-        buffer = self._pinned.allocate(ctypes.sizeof(ctypes.c_ulonglong))
-        self._flags.append(buffer)
-        return ctypes.c_ulonglong.from_address(int(buffer.handle))
+        if not self._free:
+            size = ctypes.sizeof(ctypes.c_ulonglong)
+            self._pages.append(self._pinned.allocate(FLAGS * size))
+            first = int(self._pages[-1].handle)
+            self._free = list(range(first, first + FLAGS * size, size))
+        return ctypes.c_ulonglong.from_address(self._free.pop())
 
     def launch(
         self, function: Any, blocks: int, threads: int, arguments: Sequence[int], stream: Any
