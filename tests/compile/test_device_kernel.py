@@ -183,6 +183,8 @@ def test_arrays_of_the_host_are_refused(kernel: DeviceKernel) -> None:
             kernel(x, *there(v, a))
     with pytest.raises(InputError, match="out for tau is an array of the host"):
         kernel(*there(q, v, a), out=np.zeros((STATES, 5)))
+    with pytest.raises(InputError, match="arrays of the GPU"):
+        cuda.CudaFunction(None).bind([q], [q])
 
 
 def test_arguments_that_are_missing_or_too_many(kernel: DeviceKernel, rttrr: Robot, card: CpuDriver) -> None:
@@ -282,10 +284,6 @@ def test_a_name_cannot_leave_the_comment() -> None:
     robot = rttrr_pin.load(random_tree(1, 2, types=("revolute",), mimics=False))
     text = cuda.emitter().source(robot.compile().program, '9 */ int x; /*\\\n"', {"q": ["??/ */"]})
     assert text.count("*/") == 1 and text.isascii()
-
-
-def test_a_kernel_of_the_host_is_not_made_of_it(rttrr: Robot) -> None:
-    pytest.raises(InputError, cuda.CudaFunction(None).bind, [], [])
 
 
 def test_importing_the_package_imports_no_cuda() -> None:
