@@ -73,6 +73,12 @@ def _added(terms: Array) -> Array:
     return total
 
 
+def flat(x: Array) -> Array:
+    """(N, ...) as (N, numbers), of the same memory also where each number of consecutive states lies side by side."""
+    columns = np.moveaxis(x, 0, -1)
+    return columns.reshape(-1, len(x)).T if columns.flags.c_contiguous else x.reshape(len(x), -1)
+
+
 def product(matrix: Array, vectors: Array) -> Array:
     """Matrices times vectors, (..., 3, 3) and (..., 3), whose leading axes broadcast.
 

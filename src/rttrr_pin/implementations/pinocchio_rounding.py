@@ -25,7 +25,7 @@ import numpy as np
 from rttrr_pin.compile.formula import Formula, Sizes
 from rttrr_pin.compile.variant import fingerprint
 from rttrr_pin.core.algebra import ZERO, Vector
-from rttrr_pin.core.arrays import Array, norm
+from rttrr_pin.core.arrays import Array, flat, norm
 from rttrr_pin.core.dynamics import bodies, joint_states
 from rttrr_pin.core.energy import link_states
 from rttrr_pin.core.joints.base import JointState
@@ -106,8 +106,8 @@ class Rounding:
         rows, bounds = len(batch), batch.bounds
         arrays = {"q": batch.q, "v": batch.v, "a": batch.a, "tau_joint": tau_joint}
         for key in LINK_QUANTITIES:
-            arrays[f"value_{key}"] = _flat(_finite(values[key]))
-            arrays[f"bound_{key}"] = _flat(getattr(bounds, key))
+            arrays[f"value_{key}"] = flat(_finite(values[key]))
+            arrays[f"bound_{key}"] = flat(getattr(bounds, key))
         for k, load in enumerate(batch.loads):
             arrays |= {f"load_{k}_f": np.atleast_2d(load.f), f"load_{k}_n": np.atleast_2d(load.n)}
         return {key: x.T for key, x in self._formula(rows, arrays).items()}
@@ -300,12 +300,6 @@ def _is_oblique(joint: Any) -> bool:
     """Whether a joint turns about an axis that is none of x, y, z: -z is one."""
     kind = joint.shortname()
     return "Revolute" in kind and "Unaligned" in kind
-
-
-def _flat(vectors: Array) -> Array:
-    """(N, links, 3) as (N, numbers), of the same memory where each number of consecutive states lies side by side."""
-    columns = np.moveaxis(vectors, 0, -1)
-    return columns.reshape(-1, len(vectors)).T if columns.flags.c_contiguous else vectors.reshape(len(vectors), -1)
 
 
 def _finite(values: Array) -> Array:

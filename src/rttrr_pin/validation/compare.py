@@ -24,6 +24,7 @@ from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import LINK_QUANTITIES, QUANTITIES
 from rttrr_pin.implementations import Batch, Evaluation, default_allowance
 from rttrr_pin.implementations.allowance import carriers
+from rttrr_pin.validation.difference_formula import NEEDED, DifferenceFormula
 
 
 @dataclass(slots=True)
@@ -178,7 +179,8 @@ class Comparison:
         self.quantities = tuple(key for key in QUANTITIES if key in quantities)
         self.rows = tuple(Row(*own) for own in labels(model) if own[0] in self.quantities)
         self.whole = {quantity: Worst() for quantity in self.quantities}
-        self._carriers = carriers(model)
+        self._model, self._carriers = model, carriers(model)
+        self._formula: DifferenceFormula | None = None
         self.zero = {row.quantity for row in self.rows}
         self.seen = set[str]()
         counts = [sum(row.quantity == key for row in self.rows) for key in self.quantities]
@@ -231,14 +233,20 @@ class Comparison:
 
     def differences(self, batch: Batch, subject: Evaluation, reference: Evaluation) -> Difference:
         """The difference of each row, in the order of `rows`."""
-        lengths = {key: norm(y) for key, y in reference.values.items() if key != "tau"}
         allowance, other = (_allowance(batch, side) for side in (subject, reference))
+        for key in self.quantities:
+            if key not in self.seen and (subject.values[key].any() or reference.values[key].any()):
+                self.zero.discard(key)
+                self.seen.add(key)
+        if batch.compiled and reference.tau_joint is not None and reference.values.keys() >= NEEDED:
+            if self._formula is None:
+                self._formula = DifferenceFormula(self._model, self.quantities, self._carriers)
+            error, size, tolerance = self._formula(subject, reference, allowance, other)
+            return Difference(_finite_or(error, np.inf), _finite_or(size, 0.0), tolerance)
+        lengths = {key: norm(y) for key, y in reference.values.items() if key != "tau"}
         parts = []
         for key in self.quantities:
             x, y = subject.values[key], reference.values[key]
-            if key not in self.seen and (x.any() or y.any()):
-                self.zero.discard(key)
-                self.seen.add(key)
             errors = np.abs(x - y) if key == "tau" else norm(x - y)
             sizes = self._sizes_of_tau(batch, subject, reference, lengths) if key == "tau" else lengths[key]
             # A result that is not finite is as far off as can be: an infinite error, of a size that excuses nothing.
