@@ -11,7 +11,7 @@ import pytest
 import rttrr_pin
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.implementations import Batch, Evaluation, make_implementation
-from rttrr_pin.validation import Sampler
+from rttrr_pin.validation import Sampler, compare
 from rttrr_pin.validation.compare import Comparison, Difference
 from support.trees import random_tree
 
@@ -33,8 +33,14 @@ def compared(quantities: tuple[str, ...], spoil: float | None = None) -> list[Di
             values = np.array(x.values[key])
             values.reshape(70, -1)[k, 0] = spoil
             x = Evaluation({**x.values, key: values}, x.allowance, x.tau_joint)
-    comparison = Comparison(batch.model, quantities)
-    return [comparison.differences(replace(batch, compiled=own), x, y) for own in (True, False)]
+    found = []
+    for states in (0, 10**6):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(compare, "COMPILED_FROM", states)
+            comparison = Comparison(batch.model, quantities)
+            found.append(comparison.differences(batch, x, y))
+        assert (comparison._formula is not None) == (states == 0)
+    return found
 
 
 @pytest.mark.parametrize("quantities", [QUANTITIES, ("tau",), ("F", "n")], ids=str)

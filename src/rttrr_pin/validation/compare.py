@@ -52,6 +52,9 @@ SLACK = 1e-9
 LOST = 2.0**-900
 """Below it a limit, or what is compared with it, may have lost bits that count."""
 
+COMPILED_FROM = 5_000
+"""States from which compiling what is computed of each pays; it has the bits that it has on arrays."""
+
 ADJUDICATED = 10
 """Failing states that the exact reference decides, the worst."""
 
@@ -181,6 +184,7 @@ class Comparison:
         self.whole = {quantity: Worst() for quantity in self.quantities}
         self._model, self._carriers = model, carriers(model)
         self._formula: DifferenceFormula | None = None
+        self._states = 0
         self.zero = {row.quantity for row in self.rows}
         self.seen = set[str]()
         counts = [sum(row.quantity == key for row in self.rows) for key in self.quantities]
@@ -238,7 +242,8 @@ class Comparison:
             if key not in self.seen and (subject.values[key].any() or reference.values[key].any()):
                 self.zero.discard(key)
                 self.seen.add(key)
-        if batch.compiled and reference.tau_joint is not None and reference.values.keys() >= NEEDED:
+        self._states += len(batch)
+        if self._states > COMPILED_FROM and reference.tau_joint is not None and reference.values.keys() >= NEEDED:
             if self._formula is None:
                 self._formula = DifferenceFormula(self._model, self.quantities, self._carriers)
             error, size, tolerance = self._formula(subject, reference, allowance, other)

@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import ctypes
 import os
-import platform
 import sys
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, cached_property
 from importlib import import_module
 from typing import TYPE_CHECKING
 
@@ -26,10 +25,6 @@ if TYPE_CHECKING:
     from rttrr_pin.compile.program import Program
 
 OPTIMISATION = 2
-
-CODE_MODEL = "small" if sys.platform == "linux" and platform.machine() == "x86_64" else "jitdefault"
-"""Code and its constants lie in one piece of memory, so that constants are operands of instructions; where that is not
-tried out, each is found through a register of its own."""
 
 CPU, CPU_FEATURES = "RTTRR_PIN_CPU", "RTTRR_PIN_CPU_FEATURES"
 """Variables of the environment that choose another processor than the one at hand, by LLVM's names."""
@@ -74,7 +69,7 @@ class LlvmEmitter:
     def _machine(self) -> llvm.TargetMachine:
         target = llvm.Target.from_default_triple()
         return target.create_target_machine(
-            cpu=self.processor, features=self.features, opt=OPTIMISATION, jit=True, reloc="pic", codemodel=CODE_MODEL
+            cpu=self.processor, features=self.features, opt=OPTIMISATION, jit=True, reloc="pic", codemodel="jitdefault"
         )
 
     def emit(self, program: Program | CallProgram) -> bytes:
@@ -89,8 +84,7 @@ class LlvmEmitter:
     def load(self, code: bytes, inputs: Sequence[Field], outputs: Sequence[Field]) -> LlvmExecutable:
         """Link object code into this process."""
         link_numpy()
-        one_piece = True if CODE_MODEL == "small" else None  # by llvmlite's own manager of memory
-        engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), self._machine(), use_lmm=one_piece)
+        engine = llvm.create_mcjit_compiler(llvm.parse_assembly(""), self._machine())
         engine.add_object_file(llvm.ObjectFileRef.from_data(code))
         engine.finalize_object()
         return LlvmExecutable(engine)
@@ -151,7 +145,11 @@ class LlvmExecutable:
         self._engine = engine
         signature = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64)
         self._run = signature(engine.get_function_address("run"))
-        self.one = python_function(engine.get_function_address("one"))
+
+    @cached_property
+    def one(self) -> One | None:
+        """The entry for single states; programs that run on batches only have none, and nobody asks for it."""
+        return python_function(self._engine.get_function_address("one"))
 
     def __del__(self) -> None:
         # While the interpreter ends, modules are gone or going, and the process gives the memory back anyway.

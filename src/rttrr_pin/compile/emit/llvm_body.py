@@ -30,9 +30,13 @@ def body(program: Program, layout: Layout) -> tuple[str, int]:
     return "\n".join([*declarations(layout), *mending(layout), *texts, whole, *_fill(program, layout)]), len(passed)
 
 
+WIDEST = 128
+"""Numbers in and out of a state up to which code in line gathers and scatters them: its length grows with them."""
+
+
 def is_short(program: Program) -> bool:
-    """Whether all operations but sines and cosines together stay in the instruction cache."""
-    return len(_segments(program)) == 2
+    """Whether all operations but sines and cosines stay in the instruction cache, and what gathers and scatters too."""
+    return len(_segments(program)) == 2 and program.width_in + program.width_out <= WIDEST
 
 
 def _by_segments(arguments: str, count: int) -> str:

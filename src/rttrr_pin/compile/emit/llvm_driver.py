@@ -37,7 +37,8 @@ def driver(program: Program | CallProgram, layout: Layout, between: int) -> str:
     """The functions around a program's body, as LLVM assembly; `between` columns are passed on by its parts."""
     module = ir.Module(name="driver")
     run = _Driver(module, program, layout, between).run()
-    python_entry(module, program, layout, run)
+    if isinstance(program, CallProgram) or not program.batches_only:
+        python_entry(module, program, layout, run)
     return str(module)
 
 

@@ -53,7 +53,7 @@ def _layout(program: Program | CallProgram, lanes: int) -> Layout:
     """How blocks of this program lie in memory: as many states as keep its columns in the nearest cache."""
     if isinstance(program, Program) and is_short(program):
         line = max(lanes, LINE // program.float_type.size)
-        return Layout(lanes, line, line, program.float_type)
+        return Layout(lanes, line, line, program.float_type, short=True)
     if isinstance(program, CallProgram):
         room, width = SECOND_LEVEL, program.columns
     else:

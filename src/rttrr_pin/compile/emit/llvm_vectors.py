@@ -114,17 +114,14 @@ class Layout:
         block: states in a block.
         pitch: the distance of two columns, in numbers.
         float_type: of the numbers.
+        short: whether a column of a block is one line of the cache: then all is done for a vector before the next.
     """
 
     lanes: int
     block: int
     pitch: int
     float_type: FloatType = FLOAT64
-
-    @property
-    def short(self) -> bool:
-        """Whether a column of a block is one line of the cache: then all is done for a vector before the next."""
-        return self.block * self.float_type.size <= LINE
+    short: bool = False
 
     def lines(self) -> Lines:
         """For a function on its columns."""
