@@ -30,8 +30,9 @@ def body(program: Program, layout: Layout) -> tuple[str, int]:
     return "\n".join([*declarations(layout), *mending(layout), *texts, whole, *_fill(program, layout)]), len(passed)
 
 
-WIDEST = 128
-"""Numbers in and out of a state up to which code in line gathers and scatters them: its length grows with them."""
+WIDEST = 48
+"""Numbers in and out of a state up to which code in line gathers and scatters them: a fifth faster, but compiling takes
+as long again, and that grows with them."""
 
 
 def is_short(program: Program) -> bool:
