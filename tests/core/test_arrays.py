@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from rttrr_pin.core.arrays import norm
+from rttrr_pin.core.arrays import flat, norm
 from support.tolerances import EPS
 
 
@@ -46,3 +46,15 @@ def test_a_vector_has_its_bits_in_any_array_and_layout(width: int, scale: float)
 
 def test_of_no_numbers_it_is_zero() -> None:
     assert norm(np.zeros((4, 0))).tolist() == [0.0] * 4
+
+
+@pytest.mark.parametrize("rows", [0, 1, 2, 5])
+def test_flat_arrays_keep_their_layout(rows: int) -> None:
+    """By rows, by columns, and by columns of a larger array, which are copied as columns."""
+    x = np.arange(rows * 4 * 3.0).reshape(rows, 4, 3)
+    columns = np.ascontiguousarray(np.moveaxis(x, 0, -1))
+    larger = np.concatenate([columns, columns], axis=1)[:, :3]
+    for own in (x, np.moveaxis(columns, -1, 0), np.moveaxis(larger, -1, 0)):
+        np.testing.assert_array_equal(flat(own), x.reshape(rows, 12))
+        if rows > 1:
+            assert (flat(own).strides[0] == 8) == (own.strides[0] == 8)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import fields
-from math import atan2, cos, hypot, sin
+from math import atan2, cos, hypot, prod, sin
 from typing import TypeAlias
 
 import numpy as np
@@ -74,9 +74,11 @@ def _added(terms: Array) -> Array:
 
 
 def flat(x: Array) -> Array:
-    """(N, ...) as (N, numbers), of the same memory also where each number of consecutive states lies side by side."""
-    columns = np.moveaxis(x, 0, -1)
-    return columns.reshape(-1, len(x)).T if columns.flags.c_contiguous else x.reshape(len(x), -1)
+    """(N, ...) as (N, numbers); where each number of consecutive states lies side by side, it does so still."""
+    width = prod(x.shape[1:])
+    if x.strides[0] != x.itemsize:
+        return x.reshape(len(x), width)
+    return np.ascontiguousarray(np.moveaxis(x, 0, -1)).reshape(width, len(x)).T
 
 
 def product(matrix: Array, vectors: Array) -> Array:
