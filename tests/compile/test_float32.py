@@ -38,7 +38,7 @@ from rttrr_pin.validation import Sampler
 from support.serial_chains import random_chain
 from support.slow import slow_after
 from support.tolerances import SINCOS_ULPS, norm_error
-from support.trees import random_tree
+from support.trees import extreme_tree, random_tree
 
 FIVE = ("tau", "F", "N", "f", "n")
 WITH_BOUNDS = (*FIVE, *(name + "_bound" for name in FIVE))
@@ -126,6 +126,19 @@ def test_no_true_error_exceeds_its_bound_where_numbers_have_any_size(seed: int, 
     """Denormal, zero, beyond the range of the polynomials, up to where squares overflow."""
     robot = rttrr_pin.load(random_tree(seed, 4), base=base, friction=True)
     check(robot, extreme(robot, seed), FIVE, "numpy", least=0.5)
+
+
+@pytest.mark.one_in(2)
+@pytest.mark.parametrize("seed", slow_after(1, range(4)))
+@pytest.mark.parametrize("base", ["fixed", "floating"])
+@pytest.mark.parametrize("orders", [12.0, 30.0])
+def test_no_true_error_exceeds_its_bound_where_a_robot_s_numbers_have_any_size(
+    seed: int, base: Any, orders: float
+) -> None:
+    """Most of them lose all digits to rounding, or vanish, or do not fit into float32."""
+    robot = rttrr_pin.load(extreme_tree(seed, 4, orders), base=base, friction=True)
+    for states in (ordinary(robot, "mixed", seed), extreme(robot, seed)):
+        check(robot, states, FIVE, "numpy", least=0.0)
 
 
 @pytest.mark.parametrize("name", EMITTERS)
