@@ -302,6 +302,30 @@ def peers() -> Lines:
     ]
 
 
+def batches() -> Lines:
+    """Small and large batches, by kind of call."""
+    data = result("kernel_batches")
+    threads = data["processors"]
+    kinds = ["rows", "columns", "rows of float32", f"rows, {threads} threads", f"columns, {threads} threads"]
+    rows = []
+    for key, name in ROBOTS.items():
+        for count in dict.fromkeys(row["states"] for row in data["rows"]):
+            here = {row["what"]: row for row in data["rows"] if (row["robot"], row["states"]) == (key, count)}
+            cells = (f"{here[kind]['ns_per_state']:.0f}, {here[kind]['times']:.0f}" for kind in kinds)
+            several, copied = (
+                here[what]["ns_per_state"] for what in ("all outputs", "copy of the bytes of all outputs")
+            )
+            rows.append((name, f"{count:,}", *cells, f"{several:.0f}, {several / copied:.1f}"))
+    load = " to ".join(f"{x:.1f}" for x in data["load"])
+    return [
+        "ns a state for tau, and how many times as fast as `rneaInParallel` on one thread; all of tau, F, N, f, n, and "
+        f"how many times as long as a copy of their bytes ({measured(data, 'kernel_batches')}; one thread by its "
+        f"processor time, several by the clock, while the machine had {load} processes to run):",
+        "",
+        *table(["", "states", *kinds, "all outputs, rows"], rows),
+    ]
+
+
 def _nanoseconds(rows: Rows, robot: str, what: str) -> tuple[str, float]:
     """As shown, and as sorted."""
     for row in rows:
@@ -566,7 +590,7 @@ def convention_remarks() -> Lines:
 
 
 TABLES: dict[str, Callable[[], Lines]] = {
-    "agreement": agreement, "audit": audit, "bounds": bounds, "calls": calls,
+    "agreement": agreement, "audit": audit, "batches": batches, "bounds": bounds, "calls": calls,
     "convention remarks": convention_remarks, "conventions": conventions, "cost": cost, "errors": errors,
     "faults": faults, "float32": float32, "gpu": gpu, "installed size": installed_size, "joints": joints, "kit": kit,
     "main path": main_path,

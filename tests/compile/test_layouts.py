@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Callable
 from functools import cache
 
-import llvmlite.binding as llvm
+import llvmlite.binding as binding
 import numpy as np
 import pytest
 
-from rttrr_pin.compile.emit import Executable, llvm_body
+from rttrr_pin import Robot
+from rttrr_pin.compile.build import build
+from rttrr_pin.compile.emit import Executable, llvm, llvm_body
 from rttrr_pin.compile.emit.llvm import OPTIMISATION, emitter
 from rttrr_pin.compile.emit.llvm_module import module
 from rttrr_pin.compile.expression import Graph
@@ -19,6 +22,9 @@ from rttrr_pin.compile.program import Program
 WIDTHS = (1, 2, 3, 4, 5, 7, 8, 38)
 LANES = (2, 4, 8)
 """Whatever this processor has: LLVM makes shorter vectors of longer ones."""
+
+SHORT = {2, 9, 10, 11, 26, 41, 42}
+"""Relocations of 32 bits on x86-64, but for calls, which the loader leads over a stub: R_X86_64_PC32, ..."""
 
 ROWS = (1, 2, 3, 4, 5, 8, 9, 31, 32, 33, 63, 64, 65, 131)
 
@@ -159,13 +165,33 @@ def test_parts_of_a_batch(how: Executable) -> None:
             assert (np.delete(y, np.s_[start:stop], axis=0) == 7.0).all()
 
 
+def relocations(code: bytes) -> set[int]:
+    """The types of what the loader has to fill in in sections of code of an ELF file of 64 bits."""
+    start, size, count = struct.unpack_from("<Q", code, 0x28)[0], *struct.unpack_from("<HH", code, 0x3A)
+    sections = [struct.unpack_from("<IIQQQQIIQQ", code, start + k * size) for k in range(count)]
+    executable = {k for k, own in enumerate(sections) if own[2] & 4}
+    tables = [own for own in sections if own[1] == 4 and own[7] in executable]
+    return {code[at + 8] for own in tables for at in range(own[4], own[4] + own[5], 24)}
+
+
+@pytest.mark.parametrize("outputs", ["tau", "mass_matrix"])
+@pytest.mark.parametrize("straight_line", [0, 20_000], ids=["calls", "straight lines"])
+def test_code_is_bound_to_lie_near_nothing(rttrr: Robot, outputs: str, straight_line: int) -> None:
+    """The loader may put sections 100 GB apart: addresses have 64 bits, and functions of others are called by a stub."""
+    if not llvm.ELF:
+        return
+    code = emitter().emit(build(rttrr.model, (outputs,), (), straight_line, True))
+    found = relocations(code)
+    assert found and not found & SHORT
+
+
 def test_programs_for_wider_vectors_are_whole() -> None:
     """What another processor runs is compiled here."""
     graph = Graph()
     inputs = [graph.input(k) for k in range(5)]
     made = Program(graph, (Field("x", (5,)),), (Field("y", (5,)),), tuple(graph.mul(x, x) for x in inputs))
-    triple = llvm.get_process_triple()
+    triple = binding.get_process_triple()
     if not triple.startswith("x86_64"):
         return
-    machine = llvm.Target.from_triple(triple).create_target_machine(cpu="znver4", features="", opt=OPTIMISATION)
+    machine = binding.Target.from_triple(triple).create_target_machine(cpu="znver4", features="", opt=OPTIMISATION)
     assert "zmm" in machine.emit_assembly(module(made, 8, machine, OPTIMISATION))

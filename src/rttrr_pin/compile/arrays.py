@@ -21,6 +21,8 @@ def readable(x: Any, width: int) -> bool:
 
 def as_rows(x: NDArray[Any], batch: tuple[int, ...], rows: int) -> NDArray[Any]:
     """(N, width) of the same memory where strides can say that, else as it is, (*batch, width)."""
+    if x.shape[:-1] == batch == (rows,):
+        return x
     if x.shape[:-1] != batch:
         x = np.broadcast_to(x, (*batch, x.shape[-1]))
     return x.reshape(rows, x.shape[-1]) if even(x.shape[:-1], x.strides[:-1]) else x

@@ -32,7 +32,7 @@ One = Callable[..., Any]
 for what is not read and for outputs to be allocated; all but the first may be one state for all. Returns the output, a
 tuple of several, or None where it declines what was passed, or a result is not finite."""
 
-FEW, FEW_NUMBERS = 4096, 80_000
+FEW, FEW_NUMBERS = 4096, 128 * 1024
 """States that `Executable.one` computes in one call, and numbers in and out that these may have; more are worth
 threads, and must not hold up Ctrl-C."""
 
@@ -93,7 +93,8 @@ def task(run: Callable[[int, int, int], int], executable: object, arrays: Sequen
     """
     records = array("q")
     for x in arrays:
-        records.extend((x.__array_interface__["data"][0], *x.strides, x.dtype.itemsize == 4))
+        row, column = x.strides
+        records.extend((x.__array_interface__["data"][0], row, column, x.dtype.itemsize == 4))
     address = records.buffer_info()[0]
 
     def part(start: int, stop: int, alive: object = (executable, records, arrays)) -> bool:

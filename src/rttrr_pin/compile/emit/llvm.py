@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import ctypes
 import os
+import platform
 import sys
 from collections.abc import Sequence
 from functools import cache, cached_property
@@ -25,6 +26,9 @@ if TYPE_CHECKING:
     from rttrr_pin.compile.program import Program
 
 OPTIMISATION = 2
+
+ELF = sys.platform == "linux" and platform.machine() == "x86_64"
+"""Whether assembly is of the kind that `llvm_module.beside_code` knows."""
 
 CPU, CPU_FEATURES = "RTTRR_PIN_CPU", "RTTRR_PIN_CPU_FEATURES"
 """Variables of the environment that choose another processor than the one at hand, by LLVM's names."""
@@ -60,16 +64,17 @@ class LlvmEmitter:
     def __init__(self) -> None:
         llvm.initialize_native_target()
         llvm.initialize_native_asmprinter()
+        llvm.initialize_native_asmparser()
         self.processor, self.features = _processor()
         version = ".".join(map(str, llvm.llvm_version_info))
         self.identity = (
             f"llvm {version} {llvmlite.__version__} {llvm.get_process_triple()} {self.processor} {self.features}"
         )
 
-    def _machine(self) -> llvm.TargetMachine:
+    def _machine(self, code_model: str = "jitdefault") -> llvm.TargetMachine:
         target = llvm.Target.from_default_triple()
         return target.create_target_machine(
-            cpu=self.processor, features=self.features, opt=OPTIMISATION, jit=True, reloc="pic", codemodel="jitdefault"
+            cpu=self.processor, features=self.features, opt=OPTIMISATION, jit=True, reloc="pic", codemodel=code_model
         )
 
     def emit(self, program: Program | CallProgram) -> bytes:
@@ -78,7 +83,8 @@ class LlvmEmitter:
 
         machine = self._machine()
         lanes = vector_bits(self.processor, self.features) // program.float_type.bits
-        code: bytes = machine.emit_object(module(program, lanes, machine, OPTIMISATION))
+        near = self._machine("small") if ELF else None
+        code: bytes = machine.emit_object(module(program, lanes, machine, OPTIMISATION, near))
         return code
 
     def load(self, code: bytes, inputs: Sequence[Field], outputs: Sequence[Field]) -> LlvmExecutable:

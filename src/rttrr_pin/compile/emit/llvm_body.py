@@ -25,9 +25,16 @@ def body(program: Program, layout: Layout) -> tuple[str, int]:
     parts = _segments(program)
     passed = _passed(program, parts)
     texts = [_segment(program, layout, k, part, passed) for k, part in enumerate(parts)]
+    every = range(len(parts))
+    # A short program takes a vector of states through all segments before the next; a long one, all states of a block
+    # through a segment before the next, so that code is read once for each block.
+    groups = [every] if layout.short else [range(k, k + 1) for k in every]
+    loops = [_through(layout, number, group) for number, group in enumerate(groups)]
     arguments = "ptr %in, ptr %out, ptr %between, i64 %m"
-    whole = _by_vectors(layout, len(parts)) if layout.short else _by_segments(arguments, len(parts))
-    return "\n".join([*declarations(layout), *mending(layout), *texts, whole, *_fill(program, layout)]), len(passed)
+    calls = "\n".join(f"  call void @through_{number}({arguments})" for number in range(len(groups)))
+    whole = f"define void @body({arguments}) noinline {{\n{calls}\n  ret void\n}}\n"
+    lines = [*declarations(layout), *mending(layout), *texts, *loops, whole, *_fill(program, layout)]
+    return "\n".join(lines), len(passed)
 
 
 WIDEST = 48
@@ -40,19 +47,12 @@ def is_short(program: Program) -> bool:
     return len(_segments(program)) == 2 and program.width_in + program.width_out <= WIDEST
 
 
-def _by_segments(arguments: str, count: int) -> str:
-    """All states of a block go through a segment before the next: each is a loop."""
-    calls = "\n".join(f"  call void @segment_{k}({arguments})" for k in range(count))
-    return f"define void @body({arguments}) noinline {{\n{calls}\n  ret void\n}}\n"
-
-
-def _by_vectors(layout: Layout, count: int) -> str:
-    """A vector of states goes through all segments before the next."""
+def _through(layout: Layout, number: int, segments: range) -> str:
+    """A loop over vectors of states, which go through some segments."""
     lines = layout.lines()
-    lines.text += _at_states(layout)
-    for k in range(count):
-        lines.do(f"call void @segment_{k}(ptr %q, ptr %o, ptr %b, i64 %m)")
-    return loop("body", "ptr %in, ptr %out, ptr %between", lines, "loop").replace("define internal", "define")
+    for k in segments:
+        lines.do(f"call void @segment_{k}(ptr %q, ptr %o, ptr %b)")
+    return _loop(f"through_{number}", layout, lines)
 
 
 def _fill(program: Program, layout: Layout) -> Iterator[str]:
@@ -65,7 +65,7 @@ def _fill(program: Program, layout: Layout) -> Iterator[str]:
         for column, x in part:
             value = lines.splat(graph.value[x])
             lines.do(f"store {lines.vector} {value}, ptr {lines.at('%o', column * layout.pitch)}")
-        yield _loop(f"fill_{k}", layout, lines, "loop")
+        yield _loop(f"fill_{k}", layout, lines)
     calls = "\n".join(f"  call void @fill_{k}(ptr %out, ptr %out, ptr %out, i64 %m)" for k in range(len(parts)))
     yield f"define void @fill(ptr %out, i64 %m) noinline {{\n{calls}\n  ret void\n}}\n"
 
@@ -120,7 +120,7 @@ def _passed(program: Program, parts: list[list[int]]) -> dict[int, int]:
 
 
 def _segment(program: Program, layout: Layout, k: int, part: list[int], passed: dict[int, int]) -> str:
-    """One of the straight lines, with the results of its operations; the second has those of the first as well."""
+    """Straight lines with the results of their operations; the second has those of the first as well."""
     lines = layout.lines()
     writer = VectorCode(program, layout, lines, passed)
     inside = set(part)
@@ -137,20 +137,13 @@ def _segment(program: Program, layout: Layout, k: int, part: list[int], passed: 
     for column, x in enumerate(program.results):
         if k and (x in inside or x in early):
             lines.do(f"store {lines.vector} {writer.get(x)}, ptr {lines.at('%o', column * layout.pitch)}")
-    if not layout.short:
-        return _loop(f"segment_{k}", layout, lines, writer.label)
     text = "\n".join(lines.text)
-    arguments = "ptr noalias %q, ptr noalias %o, ptr noalias %b, i64 %m"
+    arguments = "ptr noalias %q, ptr noalias %o, ptr noalias %b"
     return f"define internal void @segment_{k}({arguments}) noinline {{\nloop:\n{text}\n  ret void\n}}\n"
 
 
-def _at_states(layout: Layout) -> list[str]:
-    """%q, %o and %b are where the states from %i on have their columns."""
+def _loop(name: str, layout: Layout, lines: Lines) -> str:
+    """A function that does the lines for m states; %q, %o and %b are where these have their columns."""
     scalar = layout.float_type.c_name
-    return [f"  %{at} = getelementptr {scalar}, ptr %{base}, i64 %i" for at, base in COLUMNS]
-
-
-def _loop(name: str, layout: Layout, lines: Lines, last: str) -> str:
-    """A function that does the lines for m states."""
-    lines.text[:0] = _at_states(layout)
-    return loop(name, "ptr noalias %in, ptr noalias %out, ptr noalias %between", lines, last)
+    lines.text[:0] = [f"  %{at} = getelementptr {scalar}, ptr %{base}, i64 %i" for at, base in COLUMNS]
+    return loop(name, "ptr noalias %in, ptr noalias %out, ptr noalias %between", lines, "loop")

@@ -47,24 +47,30 @@ def pack(module: ir.Module, layout: Layout, bits: int, width: int) -> ir.Functio
                 first = w.offset(source, b.mul(i, row))
                 yield [first, *(w.offset(first, step) for step in steps)], i
 
-        in_columns = b.and_(whole, b.icmp_signed("==", row, number(size)))
-        with b.if_else(in_columns) as (copied, gathered):
-            with copied, w.loop(number(width)) as j:
-                x = w.offset(source, b.mul(j, column))
-                for i in _vectors(w, layout, full):
-                    columns.put(w.load(vector(bits, W), w.offset(x, b.mul(i, number(size))), size), j, i)
-            with gathered, b.if_else(b.icmp_signed("==", column, number(size))) as (side_by_side, apart):
-                with side_by_side:
-                    for rows, i in vectors():
-                        rows_in(columns, bits, width, rows, i)
-                with apart:
-                    for rows, i in vectors():
-                        with w.loop(number(width)) as j:
-                            value: ir.Value = ir.Constant(vector(bits, W), ir.Undefined)
-                            for k, x in enumerate(rows):
-                                item = w.load(SCALAR[bits], w.offset(x, b.mul(j, column)), size)
-                                value = b.insert_element(value, item, ir.Constant(I32, k))
-                            columns.put(value, j, i)
+        def number_by_number() -> None:
+            for rows, i in vectors():
+                with w.loop(number(width)) as j:
+                    value: ir.Value = ir.Constant(vector(bits, W), ir.Undefined)
+                    for k, x in enumerate(rows):
+                        item = w.load(SCALAR[bits], w.offset(x, b.mul(j, column)), size)
+                        value = b.insert_element(value, item, ir.Constant(I32, k))
+                    columns.put(value, j, i)
+
+        if layout.short:  # what lies better is moved in line
+            number_by_number()
+        else:
+            in_columns = b.and_(whole, b.icmp_signed("==", row, number(size)))
+            with b.if_else(in_columns) as (copied, gathered):
+                with copied, w.loop(number(width)) as j:
+                    x = w.offset(source, b.mul(j, column))
+                    for i in _vectors(w, layout, full):
+                        columns.put(w.load(vector(bits, W), w.offset(x, w.times(i, size)), size), j, i)
+                with gathered, b.if_else(b.icmp_signed("==", column, number(size))) as (side_by_side, apart):
+                    with side_by_side:
+                        for rows, i in vectors():
+                            rows_in(columns, bits, width, rows, i)
+                    with apart:
+                        number_by_number()
     b.ret_void()
     return routine
 
@@ -73,11 +79,27 @@ def unpack(module: ir.Module, layout: Layout, width: int) -> ir.Function:
     """Scatter m states from columns into an array; returns whether a number among them is not finite."""
     routine, w = function(module, f"unpack_{width}", I1, [PTR, I64, I64, PTR, I64])
     target, row, column, source, m = routine.args
-    b, W = w.builder, layout.lanes
+    b = w.builder
     columns = Columns(w, layout, source)
-    size = number(columns.size)
-    full = b.and_(m, number(-W))  # the array has no room for repeated states: what fills no vector goes one by one
     sound = Sound(w, columns.vector)
+    done = number(0) if layout.short else _whole_vectors(columns, layout, width, (target, row, column, m), sound)
+    single = Sound(w, columns.scalar)
+    with w.loop(number(width)) as j, w.loop(m, 1, done) as i:
+        value = single.seen(w.load(columns.scalar, columns.at(j, i), columns.size))
+        y = w.offset(target, b.mul(j, column))
+        w.store(value, w.offset(y, b.mul(i, row)), columns.size)
+    b.ret(b.not_(b.and_(sound.all(), single.all())))
+    return routine
+
+
+def _whole_vectors(columns: Columns, layout: Layout, width: int, array: tuple[ir.Value, ...], sound: Sound) -> ir.Value:
+    """Scatter what fills vectors, into rows or columns; returns how many states that are.
+
+    The array has no room for repeated states: what fills no vector goes one by one.
+    """
+    w, b, size = columns.w, columns.w.builder, number(columns.size)
+    target, row, column, m = array
+    full = b.and_(m, number(-layout.lanes))
     done = w.memory(I64)
     w.store(full, done)
     with b.if_else(b.icmp_signed("==", row, size)) as (in_columns, in_rows):
@@ -86,17 +108,11 @@ def unpack(module: ir.Module, layout: Layout, width: int) -> ir.Function:
             for i in _vectors(w, layout, full):
                 w.store(sound.seen(columns.get(j, i)), w.offset(y, b.mul(i, size)), columns.size)
         with in_rows, b.if_else(b.icmp_signed("==", column, size)) as (side_by_side, apart):
-            with side_by_side, w.loop(full, W) as i:
-                rows_out(columns, width, _rows(w, target, row, i, W), i, sound)
+            with side_by_side, w.loop(full, layout.lanes) as i:
+                rows_out(columns, width, _rows(w, target, row, i, layout.lanes), i, sound)
             with apart:
                 w.store(number(0), done)
-    single = Sound(w, columns.scalar)
-    with w.loop(number(width)) as j, w.loop(m, 1, w.load(I64, done)) as i:
-        value = single.seen(w.load(columns.scalar, columns.at(j, i), columns.size))
-        y = w.offset(target, b.mul(j, column))
-        w.store(value, w.offset(y, b.mul(i, row)), columns.size)
-    b.ret(b.not_(b.and_(sound.all(), single.all())))
-    return routine
+    return w.load(I64, done)
 
 
 def block_in(columns: Columns, array: Record, width: int, block: int, otherwise: Callable[[], object]) -> None:
@@ -154,7 +170,7 @@ def _rows(w: Writer, base: ir.Value, row: ir.Value, state: ir.Value, lanes: int)
     """LANES rows from a state on."""
     b = w.builder
     first = w.offset(base, b.mul(state, row))
-    return [w.offset(first, b.mul(number(k), row)) for k in range(lanes)]
+    return [first, *(w.offset(first, b.mul(number(k), row)) for k in range(1, lanes))]
 
 
 def _ahead(w: Writer, rows: Sequence[ir.Value], row: ir.Value, states: int, size: int, write: bool = False) -> None:
@@ -180,6 +196,6 @@ def _vectors(w: Writer, layout: Layout, full: ir.Value) -> Iterator[ir.Value]:
     together = b.and_(full, number(-turn))
     with w.loop(together, turn) as i:
         for k in range(TOGETHER):
-            yield b.add(i, number(k * layout.lanes))
+            yield w.plus(i, k * layout.lanes)
     with w.loop(full, layout.lanes, together) as i:
         yield i

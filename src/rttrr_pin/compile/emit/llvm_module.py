@@ -28,9 +28,21 @@ SECOND_LEVEL = 512 * 1024
 
 
 def module(
-    program: Program | CallProgram, lanes: int, machine: llvm.TargetMachine, optimisation: int
+    program: Program | CallProgram,
+    lanes: int,
+    machine: llvm.TargetMachine,
+    optimisation: int,
+    near: llvm.TargetMachine | None = None,
 ) -> llvm.ModuleRef:
-    """The program as a module, optimised where there is anything to be found: not in its straight lines."""
+    """The program as a module, optimised where there is anything to be found: not in its straight lines.
+
+    Args:
+        program: the program.
+        lanes: numbers in a vector.
+        machine: the processor.
+        optimisation: LLVM's level.
+        near: the same processor, with code and constants less than 2 GiB apart; None where they cannot be put so.
+    """
     layout = _layout(program, lanes)
     if isinstance(program, CallProgram):
         text, between = calls(program, layout), program.between
@@ -44,9 +56,26 @@ def module(
     passes.run(whole, builder)
     NewPassManager._dispose(passes)  # a method that llvmlite's own classes hide: passes would stay, 0.1 MB of them
     passes.detach()
-    whole.link_in(llvm.parse_assembly(text))
+    lines = llvm.parse_assembly(text)
+    whole.link_in(lines if near is None else llvm.parse_assembly(beside_code(near.emit_assembly(lines))))
     whole.verify()
     return whole
+
+
+def beside_code(assembly: str) -> str:
+    """A module of assembly whose constants stand in the section of its code.
+
+    There they are operands of instructions, by their distance. Sections of their own the loader puts anywhere, so that
+    each constant would take a register to be found. Labels get another name than those of the code around the program.
+    """
+    lines = []
+    for line in assembly.splitlines():
+        directive = line.split(None, 2)[:2]
+        if directive[:1] == [".section"]:
+            line = "\t.text" if directive[1].startswith(".rodata") else ""
+        if directive[:1] not in ([".file"], [".ident"]):
+            lines.append(line.replace(".L", ".Lprogram_").replace("\\", "\\5C").replace('"', "\\22"))
+    return "\n".join(f'module asm "{line}"' for line in lines)
 
 
 def _layout(program: Program | CallProgram, lanes: int) -> Layout:

@@ -27,9 +27,8 @@ class Columns:
 
     def at(self, column: ir.Value, state: ir.Value) -> ir.Value:
         """Where a column has the number of a state."""
-        b = self.w.builder
-        base = self.w.offset(self.base, b.mul(state, number(self.size)))
-        return self.w.offset(base, b.mul(column, number(self._pitch)))
+        base = self.w.offset(self.base, self.w.times(state, self.size))
+        return self.w.offset(base, self.w.times(column, self._pitch))
 
     def get(self, column: ir.Value, state: ir.Value) -> ir.Value:
         """The vector of a column from a state on."""
@@ -81,22 +80,22 @@ def rows_in(columns: Columns, bits: int, width: int, rows: Sequence[ir.Value], s
     """Gather LANES rows whose numbers lie side by side."""
     w, b, size = columns.w, columns.w.builder, bits // 8
     for j, count in _tiles(w, columns.lanes, width):
-        chunks = [w.load(vector(bits, count), w.offset(x, b.mul(j, number(size))), size) for x in rows]
+        chunks = [w.load(vector(bits, count), w.offset(x, w.times(j, size)), size) for x in rows]
         # Vector k has the chunks of rows k, k + count, k + 2 count, ...: as many squares side by side.
         squares = [_joined(b, chunks[k::count]) for k in range(count)]
         for k, value in enumerate(_transposed(b, squares)):
-            columns.put(value, b.add(j, number(k)), state)
+            columns.put(value, w.plus(j, k), state)
 
 
 def rows_out(columns: Columns, width: int, rows: Sequence[ir.Value], state: ir.Value, sound: Sound) -> None:
     """Scatter LANES rows whose numbers lie side by side."""
     w, b, size = columns.w, columns.w.builder, columns.size
     for j, count in _tiles(w, columns.lanes, width):
-        vectors = [sound.seen(columns.get(b.add(j, number(k)), state)) for k in range(count)]
+        vectors = [sound.seen(columns.get(w.plus(j, k), state)) for k in range(count)]
         vectors = _transposed(b, vectors)
         for k, y in enumerate(rows):
             chunk = _part(b, vectors[k % count], k // count * count, count)
-            w.store(chunk, w.offset(y, b.mul(j, number(size))), size)
+            w.store(chunk, w.offset(y, w.times(j, size)), size)
 
 
 def vector(bits: int, count: int) -> ir.Type:
@@ -111,7 +110,7 @@ def _tiles(w: Writer, lanes: int, width: int) -> Iterator[tuple[ir.Value, int]]:
     if at:
         with w.loop(number(at), GROUP) as first:
             for k in range(0, GROUP, most):
-                yield w.builder.add(first, number(k)), most
+                yield w.plus(first, k), most
     while at < width:
         count = min(most, 1 << (width - at).bit_length() - 1)
         yield number(at), count

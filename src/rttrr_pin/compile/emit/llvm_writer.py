@@ -34,9 +34,19 @@ class Writer:
 
     builder: ir.IRBuilder
 
+    def times(self, x: ir.Value, factor: int) -> ir.Value:
+        """A multiple; a constant of a constant, which spares LLVM the folding."""
+        return number(x.constant * factor) if isinstance(x, ir.Constant) else self.builder.mul(x, number(factor))
+
+    def plus(self, x: ir.Value, term: int) -> ir.Value:
+        """A sum, likewise."""
+        return number(x.constant + term) if isinstance(x, ir.Constant) else self.builder.add(x, number(term))
+
     def offset(self, base: ir.Value, bytes_: ir.Value | int) -> ir.Value:
         """The address so many bytes further."""
         by = number(bytes_) if isinstance(bytes_, int) else bytes_
+        if isinstance(by, ir.Constant) and by.constant == 0:
+            return base
         return self.builder.gep(base, [by], source_etype=ir.IntType(8))
 
     def load(self, ir_type: ir.Type, address: ir.Value, align: int | None = None) -> ir.Value:
