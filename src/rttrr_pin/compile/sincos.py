@@ -44,42 +44,40 @@ def _numbers(*texts: str) -> tuple[float, ...]:
     return tuple(map(float.fromhex, texts))
 
 
-PIO2 = _numbers("0x1.921fb54442d18p+0", "0x1.1a62633145c07p-54", "-0x1.f1976b7ed8fbcp-110")
-
-TWO_OVER_PI = float.fromhex("0x1.45f306dc9c883p-1")
-
-ROUND = 1.5 * 2.0**52
-
-LARGEST = 2.0**17
-
-SINE = _numbers(
-    "-0x1.5555555555555p-3",
-    "0x1.1111111110bb2p-7",
-    "-0x1.a01a019e83aa8p-13",
-    "0x1.71de3796898c8p-19",
-    "-0x1.ae600b022d198p-26",
-    "0x1.5e0b19c752b8ep-33",
+IN_FLOAT64 = SinCos(
+    pio2=_numbers("0x1.921fb54442d18p+0", "0x1.1a62633145c07p-54", "-0x1.f1976b7ed8fbcp-110"),
+    two_over_pi=float.fromhex("0x1.45f306dc9c883p-1"),
+    round=1.5 * 2.0**52,
+    largest=2.0**17,
+    sine=_numbers(
+        "-0x1.5555555555555p-3",
+        "0x1.1111111110bb2p-7",
+        "-0x1.a01a019e83aa8p-13",
+        "0x1.71de3796898c8p-19",
+        "-0x1.ae600b022d198p-26",
+        "0x1.5e0b19c752b8ep-33",
+    ),
+    cosine=_numbers(
+        "0x1.5555555555555p-5",
+        "-0x1.6c16c16c16967p-10",
+        "0x1.a01a019f4eafdp-16",
+        "-0x1.27e4fa17d9c81p-22",
+        "0x1.1eeb68e8f6cdfp-29",
+        "-0x1.907da33638fbcp-37",
+    ),
 )
-
-COSINE = _numbers(
-    "0x1.5555555555555p-5",
-    "-0x1.6c16c16c16967p-10",
-    "0x1.a01a019f4eafdp-16",
-    "-0x1.27e4fa17d9c81p-22",
-    "0x1.1eeb68e8f6cdfp-29",
-    "-0x1.907da33638fbcp-37",
-)
-
-IN_FLOAT64 = SinCos(PIO2, TWO_OVER_PI, ROUND, LARGEST, SINE, COSINE)
 
 IN_FLOAT32 = SinCos(
-    _numbers("0x1.921fb6p+0", "-0x1.777a5cp-25", "-0x1.ee59dap-50"),
-    float.fromhex("0x1.45f306p-1"),
-    1.5 * 2.0**23,
-    2.0**17,
-    _numbers("-0x1.555552p-3", "0x1.110c02p-7", "-0x1.9ab47cp-13"),
-    _numbers("0x1.555554p-5", "-0x1.6c12b4p-10", "0x1.9bc79cp-16"),
+    pio2=_numbers("0x1.921fb6p+0", "-0x1.777a5cp-25", "-0x1.ee59dap-50"),
+    two_over_pi=float.fromhex("0x1.45f306p-1"),
+    round=1.5 * 2.0**23,
+    largest=2.0**17,
+    sine=_numbers("-0x1.555552p-3", "0x1.110c02p-7", "-0x1.9ab47cp-13"),
+    cosine=_numbers("0x1.555554p-5", "-0x1.6c12b4p-10", "0x1.9bc79cp-16"),
 )
+
+LARGEST = IN_FLOAT64.largest
+"""Up to this |q| [rad] polynomials serve in float64."""
 
 
 def sincos_in(float_type: FloatType) -> SinCos:
