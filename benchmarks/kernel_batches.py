@@ -15,7 +15,7 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -72,7 +72,8 @@ def measure(name: str, count: int, processors: int, repeats: int) -> list[dict[s
         results: dict[str, np.ndarray] = {}
         for threads in sorted({1, processors}):
             many = f", {threads} threads" if threads > 1 else ""
-            for layout, order in (("rows", "C"), ("columns", "F")):
+            orders: tuple[tuple[str, Literal["C", "F"]], ...] = (("rows", "C"), ("columns", "F"))
+            for layout, order in orders:
                 given = [np.array(x, order=order) for x in rows]
                 out = results[layout + many] = np.empty(job.v.shape, order=order)
                 work[layout + many] = into(tau, given, out, threads)
@@ -111,7 +112,8 @@ def measure(name: str, count: int, processors: int, repeats: int) -> list[dict[s
 
 def into(kernel: Kernel[Any], given: Any, out: Any, threads: int) -> Callable[[], object]:
     """The call that writes to arrays that are there."""
-    return lambda: kernel(*given, out=out, threads=threads)
+    q, v, a = given
+    return lambda: kernel(q, v, a, out=out, threads=threads)
 
 
 def copies(rows: Any, results: dict[str, np.ndarray]) -> Callable[[], object]:

@@ -32,7 +32,7 @@ One = Callable[..., Any]
 for what is not read and for outputs to be allocated; all but the first may be one state for all. Returns the output, a
 tuple of several, or None where it declines what was passed, or a result is not finite."""
 
-FEW, FEW_NUMBERS = 4096, 128 * 1024
+FEW, FEW_NUMBERS = 4096, 256 * 1024
 """States that `Executable.one` computes in one call, and numbers in and out that these may have; more are worth
 threads, and must not hold up Ctrl-C."""
 
