@@ -69,6 +69,27 @@ def cost() -> Lines:
     ]
 
 
+def validate_speed() -> Lines:
+    data, all_robots = result("validate_speed"), result("example_robots")
+    walls = data["million_wall_s"]
+    return [
+        "`validate` in one process, all five quantities against Pinocchio with allowances and adjudication, beside "
+        f"`rneaInParallel` on the same {data['states']:,} states, which gives tau alone: microseconds of the processor "
+        f"for a state, all threads together, least and median ({measured(data, 'validate_speed')}):",
+        "",
+        *table(
+            ["", "links", "`validate`", "`rneaInParallel`", "times that, median"],
+            [
+                (x["robot"], x["links"], *(f"{a}, {b}" for a, b in (x["validate"], x["rneaInParallel"])), x["quotient"])
+                for x in data["rows"]
+            ],
+        ),
+        "",
+        f"`rttrr-pin validate --states 1000000`: {walls[0]} to {walls[-1]} s from outside. All example robots, "
+        f"{all_robots['states']:,} states on each base: {all_robots['seconds']} s.",
+    ]
+
+
 def robots() -> Lines:
     data, trees = result("example_robots"), result("random_trees")
     by_name: dict[str, Rows] = {}
@@ -596,7 +617,7 @@ TABLES: dict[str, Callable[[], Lines]] = {
     "main path": main_path,
     "single precision": single_precision, "mutation scores": mutation_scores, "operations": operations,
     "peers": peers, "robots": robots, "speed": speed, "three numbers": three_numbers,
-    "vectors": vectors,
+    "validate speed": validate_speed, "vectors": vectors,
 } | CONFORM  # fmt: skip
 """By the name in the marker."""
 
