@@ -290,8 +290,10 @@ def _at_most(worst: Worst, first: int) -> float:
 
 
 def _trusted(limits: Array) -> Array:
-    """The limits that have neither overflowed nor lost a bit; 0 for the others."""
-    return np.where((limits > LOST) & (limits < np.inf), limits, 0.0)
+    """The limits, in place: 0 for those that have overflowed or lost a bit."""
+    lost = limits <= LOST if limits.max() < np.inf else ~((limits > LOST) & (limits < np.inf))
+    np.copyto(limits, 0.0, where=lost)
+    return limits
 
 
 def _see_whole(worst: Worst, x: Array, y: Array, rows: Difference, first: int) -> None:
@@ -329,9 +331,8 @@ def _allowance(batch: Batch, evaluation: Evaluation) -> Mapping[str, Array]:
 
 
 def _finite_or(values: Array, otherwise: float) -> Array:
-    """The values, and something else for what is not finite."""
-    finite = np.isfinite(values)
-    return values if finite.all() else np.where(finite, values, otherwise)
+    """Values that are not negative, and something else for what is not finite."""
+    return values if values.max(initial=0.0) < np.inf else np.where(np.isfinite(values), values, otherwise)
 
 
 def ratio(part: Array, whole: Array) -> Array:
