@@ -16,8 +16,8 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.exact import Adjudication, Assessment, enclose
 from rttrr_pin.implementations import Batch, Evaluation
 from rttrr_pin.validation import Sampler, compare_state, validate
-from rttrr_pin.validation.compare import ADJUDICATED, Ranking
 from rttrr_pin.validation.comparison import adjudicate, true_parameters
+from rttrr_pin.validation.ranking import ADJUDICATED, Ranking
 from support.implementations import Spoil, altered, evaluated
 from support.serial_chains import EXAMPLES
 

@@ -15,7 +15,8 @@ from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import QUANTITIES
 from rttrr_pin.implementations import Batch, Evaluation
 from rttrr_pin.implementations.protocol import shape_of
-from rttrr_pin.validation.compare import Comparison, Worst
+from rttrr_pin.validation.compare import Comparison
+from rttrr_pin.validation.ranking import Worst
 from rttrr_pin.validation.sampling import Sampler
 
 STATES = 16

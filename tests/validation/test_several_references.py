@@ -14,7 +14,7 @@ from rttrr_pin import RandomPayload, Robot
 from rttrr_pin.cli import main
 from rttrr_pin.implementations import Batch
 from rttrr_pin.validation import compare_state, validate
-from rttrr_pin.validation.compare import ADJUDICATED
+from rttrr_pin.validation.ranking import ADJUDICATED
 from rttrr_pin.validation.search import search_worst_state
 from support.implementations import altered
 from support.trees import random_tree

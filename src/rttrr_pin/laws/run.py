@@ -22,7 +22,8 @@ from rttrr_pin.laws.case import Case
 from rttrr_pin.laws.law import Law
 from rttrr_pin.reporting.results import Summarised, finite
 from rttrr_pin.robot import Robot
-from rttrr_pin.validation.compare import Worst, ratio
+from rttrr_pin.validation.compare import ratio
+from rttrr_pin.validation.ranking import Worst
 from rttrr_pin.validation.sampling import Payload, Sampler
 from rttrr_pin.validation.states import Progress, States, check_count, model_of
 

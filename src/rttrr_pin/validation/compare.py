@@ -25,26 +25,7 @@ from rttrr_pin.core.wrench import LINK_QUANTITIES, QUANTITIES
 from rttrr_pin.implementations import Batch, Evaluation, default_allowance
 from rttrr_pin.implementations.allowance import carriers
 from rttrr_pin.validation.difference_formula import NEEDED, DifferenceFormula
-
-
-@dataclass(slots=True)
-class Worst:
-    """The largest value seen, and the state it was seen in."""
-
-    value: float = 0.0
-    state: int = -1
-
-    def see(self, values: Array, first: int) -> None:
-        """Take in the values of consecutive states; the earliest of equals stays."""
-        if len(values):
-            k = int(np.argmax(values))
-            self.take(float(values[k]), first + k)
-
-    def take(self, value: float, state: int) -> None:
-        """Take in the value of one state."""
-        if value > self.value or self.state < 0:
-            self.value, self.state = value, state
-
+from rttrr_pin.validation.ranking import Worst
 
 SLACK = 1e-9
 """Relative: more than rounding makes of the quotients that say which others are worth computing."""
@@ -54,38 +35,6 @@ LOST = 2.0**-900
 
 COMPILED_FROM = 5_000
 """States from which compiling what is computed of each pays; it has the bits that it has on arrays."""
-
-ADJUDICATED = 10
-"""Failing states that the exact reference decides, the worst."""
-
-
-@dataclass(slots=True)
-class Ranking:
-    """Which states to look at again.
-
-    Attributes:
-        failing: how many lie beyond the tolerance.
-        worst: those that lie farthest beyond, worst first, at most `ADJUDICATED`: error / tolerance and state.
-        passing: the state within the tolerance that comes closest to it.
-    """
-
-    failing: int = 0
-    worst: list[tuple[float, int]] = field(default_factory=list)
-    passing: Worst = field(default_factory=Worst)
-
-    def see(self, ratios: Array, first: int) -> None:
-        """Take in the largest error / tolerance of each of consecutive states."""
-        beyond = np.flatnonzero(ratios > 1.0)
-        self.failing += len(beyond)
-        states = self.worst + [(float(ratios[k]), first + int(k)) for k in beyond]
-        self.worst = sorted(states, key=lambda pair: (-pair[0], pair[1]))[:ADJUDICATED]
-        if len(beyond) < len(ratios):
-            k = int(np.argmax(np.where(ratios > 1.0, -1.0, ratios)))
-            self.passing.see(ratios[k : k + 1], first + k)
-
-    def chosen(self) -> list[int]:
-        """The worst failing states, then the worst passing one."""
-        return [state for _, state in self.worst] + [self.passing.state] * (self.passing.state >= 0)
 
 
 @dataclass(slots=True)
@@ -223,8 +172,7 @@ class Comparison:
                 row.failures += failures
         self._see_relative(difference, batch.first)
         for key, places in self._places.items():
-            x, y = subject.values[key], reference.values[key]
-            _see_whole(self.whole[key], x, y, difference.at(places), batch.first)
+            _see_whole(self.whole[key], subject.values[key], reference.values[key], difference.at(places), batch.first)
         return ratios
 
     def _see_relative(self, difference: Difference, first: int) -> None:
@@ -303,14 +251,12 @@ def _see_whole(worst: Worst, x: Array, y: Array, rows: Difference, first: int) -
     """
     sides = rows.error, y.T if y.ndim == 2 else rows.size  # driving forces have other sizes in their rows
     error, size = (np.einsum("ij,ij->j", side, side) for side in sides)
-    limit = np.square(_at_most(worst, first)) * size
-    states = np.flatnonzero(error >= _trusted(limit))
+    states = np.flatnonzero(error >= _trusted(np.square(_at_most(worst, first)) * size))
     states = states[rows.error[:, states].any(axis=0)]
     if len(states):
         x, y = (side[states].reshape(len(states), -1) for side in (x, y))
         whole = Difference(_finite_or(norm(x - y), np.inf), norm(y), norm(rows.tolerance[:, states].T))
-        values = whole.known_relative
-        k = int(np.argmax(values))
+        k = int(np.argmax(values := whole.known_relative))
         worst.take(float(values[k]), first + int(states[k]))
 
 
@@ -326,8 +272,7 @@ def with_allowance(batch: Batch, evaluation: Evaluation) -> Evaluation:
 
 def _allowance(batch: Batch, evaluation: Evaluation) -> Mapping[str, Array]:
     """What rounding may make of a result; what is not finite excuses nothing."""
-    known = with_allowance(batch, evaluation).allowance or {}
-    return {key: _finite_or(x, 0.0) for key, x in known.items()}
+    return {key: _finite_or(x, 0.0) for key, x in (with_allowance(batch, evaluation).allowance or {}).items()}
 
 
 def _finite_or(values: Array, otherwise: float) -> Array:

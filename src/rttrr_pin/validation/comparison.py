@@ -18,7 +18,8 @@ from rttrr_pin.implementations import Batch, Evaluation, Implementation, make_im
 from rttrr_pin.implementations.protocol import evaluated
 from rttrr_pin.implementations.registry import Source
 from rttrr_pin.robot import Robot
-from rttrr_pin.validation.compare import Comparison, Difference, Ranking, Row, with_allowance
+from rttrr_pin.validation.compare import Comparison, Difference, Row, with_allowance
+from rttrr_pin.validation.ranking import Ranking
 from rttrr_pin.validation.sampling import Payload, Sampler
 from rttrr_pin.validation.states import States, model_of
 

@@ -15,7 +15,8 @@ from rich.text import Text
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import STANDARD_GRAVITY
 from rttrr_pin.core.wrench import QUANTITIES
-from rttrr_pin.validation.compare import ADJUDICATED, Row
+from rttrr_pin.validation.compare import Row
+from rttrr_pin.validation.ranking import ADJUDICATED
 
 if TYPE_CHECKING:  # other features have `drawn` and `word` from here
     from rttrr_pin.exact import Adjudication, Assessment, Deviation

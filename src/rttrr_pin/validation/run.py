@@ -16,8 +16,9 @@ from rttrr_pin.implementations import Implementation, label
 from rttrr_pin.implementations.registry import Source
 from rttrr_pin.reporting.results import Summarised, finite
 from rttrr_pin.robot import Robot
-from rttrr_pin.validation.compare import Comparison, Row, Worst, farthest_of
+from rttrr_pin.validation.compare import Comparison, Row, farthest_of
 from rttrr_pin.validation.comparison import References, Run
+from rttrr_pin.validation.ranking import Worst
 from rttrr_pin.validation.sampling import Payload
 from rttrr_pin.validation.states import Progress, check_count
 from rttrr_pin.version import __version__
