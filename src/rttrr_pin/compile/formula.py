@@ -112,7 +112,7 @@ class Formula:
         results = self._function(TRACED, scalars)
         ordered: list[Any] = [x for own in self._outputs for x in results[own.name]]
         numbers = [x.number if isinstance(x, Node) else graph.constant(float(x)) for x in ordered]
-        return Program(graph, self._inputs, self._outputs, tuple(numbers), batches_only=True)
+        return Program(graph, self._inputs, self._outputs, tuple(numbers), quickly=True)
 
     def _on_arrays(self, inputs: Sequence[Array], results: Mapping[str, Array]) -> None:
         scalars: dict[str, list[Any]] = {own.name: list(x.T) for own, x in zip(self._inputs, inputs, strict=True)}

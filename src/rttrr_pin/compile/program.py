@@ -47,7 +47,8 @@ class Program(Widths):
         outputs: the arrays it writes.
         results: for each number of the outputs, one array after the other, the node that computes it.
         float_type: of all numbers, those of the robot included.
-        batches_only: whether nobody calls it for single states, so that it needs no entry for them.
+        quickly: whether it is to be compiled in little time, of code half as fast and without an entry for single
+            states: what only checks need.
     """
 
     graph: Graph
@@ -55,7 +56,7 @@ class Program(Widths):
     outputs: tuple[Field, ...]
     results: tuple[int, ...]
     float_type: FloatType = FLOAT64
-    batches_only: bool = False
+    quickly: bool = False
 
     @cached_property
     def order(self) -> tuple[int, ...]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass, replace
 from math import prod
 from typing import Any
 
@@ -14,6 +14,7 @@ from rttrr_pin.compile import cache
 from rttrr_pin.compile.emit import Emitter, Executable
 from rttrr_pin.compile.fields import Field, PayloadSlot, Widths, inputs_read, outputs_of
 from rttrr_pin.compile.float_type import FloatType
+from rttrr_pin.compile.quantities import BOUND
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 
@@ -70,8 +71,12 @@ def compiled(
     code = cache.read(name)
     if code is None:
         from rttrr_pin.compile.build import build  # the compiler, not needed for what is on disk
+        from rttrr_pin.compile.program import Program
 
-        code = emitter.emit(build(model, outputs, slots, longest, emitter.fuses, float_type))
+        program = build(model, outputs, slots, longest, emitter.fuses, float_type)
+        if isinstance(program, Program) and all(name.endswith(BOUND) for name in outputs):
+            program = replace(program, quickly=True)
+        code = emitter.emit(program)
         cache.write(name, code)
     fields_in, fields_out = inputs_read(model, outputs, slots), outputs_of(model, outputs)
     return Variant(fields_in, fields_out, emitter.load(code, fields_in, fields_out))

@@ -71,20 +71,22 @@ class LlvmEmitter:
             f"llvm {version} {llvmlite.__version__} {llvm.get_process_triple()} {self.processor} {self.features}"
         )
 
-    def _machine(self, code_model: str = "jitdefault") -> llvm.TargetMachine:
+    def _machine(self, level: int = OPTIMISATION, code_model: str = "jitdefault") -> llvm.TargetMachine:
         target = llvm.Target.from_default_triple()
         return target.create_target_machine(
-            cpu=self.processor, features=self.features, opt=OPTIMISATION, jit=True, reloc="pic", codemodel=code_model
+            cpu=self.processor, features=self.features, opt=level, jit=True, reloc="pic", codemodel=code_model
         )
 
     def emit(self, program: Program | CallProgram) -> bytes:
         """Object code."""
         from rttrr_pin.compile.emit.llvm_module import module  # llvmlite's builder, not needed for what is on disk
+        from rttrr_pin.compile.program import Program
 
-        machine = self._machine()
+        level = 0 if isinstance(program, Program) and program.quickly else OPTIMISATION
+        machine = self._machine(level)
         lanes = vector_bits(self.processor, self.features) // program.float_type.bits
-        near = self._machine("small") if ELF else None
-        code: bytes = machine.emit_object(module(program, lanes, machine, OPTIMISATION, near))
+        near = self._machine(level, "small") if ELF else None
+        code: bytes = machine.emit_object(module(program, lanes, machine, level, near))
         return code
 
     def load(self, code: bytes, inputs: Sequence[Field], outputs: Sequence[Field]) -> LlvmExecutable:
@@ -131,9 +133,9 @@ def link_numpy() -> None:
 def python_function(address: int) -> One | None:
     """The compiled function at an address as a callable (ctypes takes longer to hand over four arrays than one state).
 
-    None where pointers have not the 64 bits that it expects.
+    None where there is none, and where pointers have not the 64 bits that it expects.
     """
-    if ctypes.sizeof(ctypes.c_void_p) != 8:
+    if not address or ctypes.sizeof(ctypes.c_void_p) != 8:
         return None
     method = _Method(b"one", address, METH_FASTCALL, None)
     _alive.append(method)
@@ -154,7 +156,7 @@ class LlvmExecutable:
 
     @cached_property
     def one(self) -> One | None:
-        """The entry for single states; programs that run on batches only have none, and nobody asks for it."""
+        """The entry for single states; programs that were compiled quickly have none."""
         return python_function(self._engine.get_function_address("one"))
 
     def __del__(self) -> None:

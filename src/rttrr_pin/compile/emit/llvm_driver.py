@@ -37,7 +37,7 @@ def driver(program: Program | CallProgram, layout: Layout, between: int) -> str:
     """The functions around a program's body, as LLVM assembly; `between` columns are passed on by its parts."""
     module = ir.Module(name="driver")
     run = _Driver(module, program, layout, between).run()
-    if isinstance(program, CallProgram) or not program.batches_only:
+    if isinstance(program, CallProgram) or not program.quickly:
         python_entry(module, program, layout, run)
     return str(module)
 
