@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import struct
 import threading
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -247,6 +249,17 @@ def test_what_comes_from_disk_is_the_same(rttrr: Robot, monkeypatch: pytest.Monk
     straight = Kernel(rttrr.model, "tau")(s.q, s.v, s.a)
     assert norm_error(straight, first) <= ROUNDING
     assert len(list((cache.folder() or Path()).glob("*.kernel"))) == 2
+
+
+@pytest.mark.parametrize("text", [b".L", b'"', b"\\", b"\n", b".section"], ids=str)
+def test_numbers_whose_bytes_read_like_assembly_stay_what_they_are(rttrr: Robot, text: bytes) -> None:
+    """The table of numbers goes through assembly, in which bytes stand as text; labels there get other names."""
+    (mass,) = struct.unpack("<d", text[:6].rjust(6, b"\0") + b"\xf0\x3f")
+    model = rttrr.model
+    model = replace(model, links=tuple(replace(link, mass=mass) if link.mass else link for link in model.links))
+    s = states(rttrr, 0)
+    by_calls, straight = (Kernel(model, "tau", straight_line=longest)(s.q, s.v, s.a) for longest in (0, 10**6))
+    assert norm_error(by_calls, straight) <= ROUNDING
 
 
 @pytest.mark.slow

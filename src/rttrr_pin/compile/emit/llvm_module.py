@@ -62,6 +62,10 @@ def module(
     return whole
 
 
+DATA = ([".ascii"], [".asciz"], [".string"])
+"""What is followed by bytes as text, in which a label's first characters may stand by chance."""
+
+
 def beside_code(assembly: str) -> str:
     """A module of assembly whose constants stand in the section of its code.
 
@@ -74,7 +78,8 @@ def beside_code(assembly: str) -> str:
         if directive[:1] == [".section"]:
             line = "\t.text" if directive[1].startswith(".rodata") else ""
         if directive[:1] not in ([".file"], [".ident"]):
-            lines.append(line.replace(".L", ".Lprogram_").replace("\\", "\\5C").replace('"', "\\22"))
+            line = line if directive[:1] in DATA else line.replace(".L", ".Lprogram_")
+            lines.append(line.replace("\\", "\\5C").replace('"', "\\22"))
     return "\n".join(f'module asm "{line}"' for line in lines)
 
 
