@@ -205,7 +205,7 @@ def sizes(batch: Batch) -> dict[str, Array]:
     for load in batch.loads:
         f[:, load.link] += norm(np.atleast_2d(load.f))
         n[:, load.link] += norm(np.atleast_2d(load.n))
-    add_inwards([joint.parent for joint in model.joints], f, n, reach)
+    add_inwards([joint.parent for joint in model.joints], f.T, n.T, reach.T)
     return {"F": F, "N": N, "f": f, "n": n}
 
 
@@ -215,16 +215,16 @@ def _length(vector: Vector, rows: int) -> Array:
     return norm(np.stack([np.broadcast_to(np.abs(x), rows) for x in components], axis=-1))
 
 
-def add_inwards(parents: Sequence[int], f: Array, n: Array, reach: Array) -> None:
-    """Add the sizes of forces and moments on each body to those on its parent, in place, (N, bodies) each.
+def add_inwards(parents: Sequence[int], f: Any, n: Any, reach: Any) -> None:
+    """Add the sizes of forces and moments on each body to those on its parent, in place: scalars by body.
 
     The parent is -1 where there is none. `reach` is at most how far a body's origin is from its parent's [m]; zero
     where all moments are about one point.
     """
     for i, p in reversed(list(enumerate(parents))):
         if p >= 0:
-            f[:, p] += f[:, i]
-            n[:, p] += n[:, i] + reach[:, i] * f[:, i]
+            f[p] = f[p] + f[i]
+            n[p] = n[p] + (n[i] + reach[i] * f[i])
 
 
 def sum_inwards(parents: Sequence[int], terms: Array) -> None:

@@ -229,7 +229,7 @@ def _rounding(
         body, f_load, n_load = bodies[load.link], norm(np.atleast_2d(load.f)), norm(np.atleast_2d(load.n))
         f[:, body] += weight[body] * f_load
         n[:, body] += weight[body] * (n_load + arm[:, body] * f_load)
-    add_inwards(parents, f, n, np.zeros_like(rho))  # all moments are about C
+    add_inwards(parents, f.T, n.T, np.zeros_like(rho.T))  # all moments are about C
     return {key: x[:, bodies] for key, x in (out | {"f": f, "n": n + rho * f}).items()}
 
 

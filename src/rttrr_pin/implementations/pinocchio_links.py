@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -73,10 +73,12 @@ def carriers(model: Model, links: PinLinks) -> list[int]:
     return [p if p >= 0 and links.fixed[p] else -1 for p in parents]
 
 
-def where_inertia_acts(links: PinLinks, carrier: Sequence[int]) -> list[bool]:
-    """Of each link, whether anything but loads acts on it or behind: not so on some fixed ones."""
+def acting(model: Model, links: PinLinks, loaded: Iterable[int] = ()) -> list[bool]:
+    """Of each link, whether it moves, or anything with mass or a payload is on it or further out."""
     acts: list[bool] = (~links.fixed | links.massive).tolist()
-    for i, p in reversed(list(enumerate(carrier))):
-        if p >= 0:
-            acts[p] = acts[p] or acts[i]
+    for link in loaded:
+        acts[link] = True
+    for i, joint in reversed(list(enumerate(model.joints))):
+        if joint.parent >= 0:
+            acts[joint.parent] = acts[joint.parent] or acts[i]
     return acts

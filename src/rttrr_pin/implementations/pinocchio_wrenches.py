@@ -32,7 +32,7 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.core.processors import processors
 from rttrr_pin.implementations.library import Motion
-from rttrr_pin.implementations.pinocchio_links import PinLinks
+from rttrr_pin.implementations.pinocchio_links import PinLinks, acting
 from rttrr_pin.implementations.pinocchio_parallel import FEATHER, Draft, Wrenches, WrenchModel
 
 SLIDING, TURNING = pin.JointModelTranslation, pin.JointModelSpherical
@@ -67,7 +67,7 @@ class WrenchModels:
         self._parents = [int(parent) for parent in pin_model.parents]
         self._body, self._massive = links.joint.tolist(), links.massive.tolist()
         self._own = {self._body[i]: i for i in np.flatnonzero(~links.fixed).tolist()}
-        crossed = [i for i, acts in enumerate(self._where_forces_act()) if acts]
+        crossed = [i for i, acts in enumerate(acting(model, links, self._loaded)) if acts]
         moved = [i for i, massive in enumerate(self._massive) if massive]
         drafts = [
             *map(self._draft_of_crossing, _parts(self._side_by_side(crossed), self._freedoms_around)),
@@ -87,17 +87,6 @@ class WrenchModels:
         for model in self._models:
             model.run(motion, loads, result)
         return result
-
-    def _where_forces_act(self) -> list[bool]:
-        """For each link, whether anything that has mass or a payload is on it or further out."""
-        acting = list(self._massive)
-        for link in self._loaded:
-            acting[link] = True
-        for i, parent in reversed(list(enumerate(self._carried_by))):
-            acting[i] = acting[i] or not self._links.fixed[i]
-            if parent >= 0:
-                acting[parent] = acting[parent] or acting[i]
-        return acting
 
     def _side_by_side(self, links: Sequence[int]) -> list[int]:
         """Links in the order of Pinocchio's bodies, in which a branch stands together."""

@@ -24,7 +24,6 @@ from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import LINK_QUANTITIES, QUANTITIES
 from rttrr_pin.implementations import Batch, Evaluation, default_allowance
 from rttrr_pin.implementations.allowance import carriers
-from rttrr_pin.validation.difference_formula import NEEDED, DifferenceFormula
 from rttrr_pin.validation.ranking import Worst
 
 SLACK = 1e-9
@@ -32,9 +31,6 @@ SLACK = 1e-9
 
 LOST = 2.0**-900
 """Below it a limit, or what is compared with it, may have lost bits that count."""
-
-COMPILED_FROM = 5_000
-"""States from which compiling what is computed of each pays; it has the bits that it has on arrays."""
 
 
 @dataclass(slots=True)
@@ -131,9 +127,7 @@ class Comparison:
         self.quantities = tuple(key for key in QUANTITIES if key in quantities)
         self.rows = tuple(Row(*own) for own in labels(model) if own[0] in self.quantities)
         self.whole = {quantity: Worst() for quantity in self.quantities}
-        self._model, self._carriers = model, carriers(model)
-        self._formula: DifferenceFormula | None = None
-        self._states = 0
+        self._carriers = carriers(model)
         self.zero = {row.quantity for row in self.rows}
         self.seen = set[str]()
         counts = [sum(row.quantity == key for row in self.rows) for key in self.quantities]
@@ -190,12 +184,6 @@ class Comparison:
             if key not in self.seen and (subject.values[key].any() or reference.values[key].any()):
                 self.zero.discard(key)
                 self.seen.add(key)
-        self._states += len(batch)
-        if self._states > COMPILED_FROM and reference.tau_joint is not None and reference.values.keys() >= NEEDED:
-            if self._formula is None:
-                self._formula = DifferenceFormula(self._model, self.quantities, self._carriers)
-            error, size, tolerance = self._formula(subject, reference, allowance, other)
-            return Difference(_finite_or(error, np.inf), _finite_or(size, 0.0), tolerance)
         lengths = {key: norm(y) for key, y in reference.values.items() if key != "tau"}
         parts = []
         for key in self.quantities:
