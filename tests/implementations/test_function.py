@@ -200,6 +200,16 @@ def test_an_implementation_of_the_users_says_what_it_promises(says: Callable[[],
         validate(pendulum(), Own(), "recursion", n_states=3)
 
 
+@pytest.mark.parametrize("dtype", ["float64", "float32"])
+@pytest.mark.parametrize("outputs", ["tau", ("tau", "n")], ids=str)
+def test_a_kernel_is_a_function_like_any_other(outputs: str | tuple[str, ...], dtype: str) -> None:
+    """Though q alone is what it cannot do without; and one of another robot is wrong."""
+    robot = rttrr_pin.load("rttrr")
+    assert validate(robot, robot.compile(outputs, dtype=dtype), n_states=10).passed
+    other = rttrr_pin.load("rttrr", gravity=(0, 0, -9.8))
+    assert not validate(robot, other.compile(outputs, dtype=dtype), n_states=10).passed
+
+
 def test_a_function_that_changes_its_precision_is_judged_as_when_it_was_tried() -> None:
     robot = rttrr_pin.load("rttrr")
     kernel = robot.compile("tau")

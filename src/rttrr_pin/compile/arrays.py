@@ -49,10 +49,11 @@ def check_out(name: str, x: Any, shape: tuple[int, ...], dtype: np.dtype[Any]) -
         ShapeError: it has another shape.
     """
     if not isinstance(x, np.ndarray) or x.dtype != dtype or not x.flags.aligned or not x.dtype.isnative:
-        description = f"array of {x.dtype}" if isinstance(x, np.ndarray) else type(x).__name__
-        description = f"misaligned {description}" if isinstance(x, np.ndarray) and not x.flags.aligned else description
+        description = f"a {type(x).__name__}"
+        if isinstance(x, np.ndarray):
+            description = f"{'an' if x.flags.aligned else 'a misaligned'} array of {x.dtype}"
         wanted = f"np.empty({shape}{'' if dtype == np.float64 else f', np.{dtype}'})"
-        raise InputError(f"out for {name} is a {description}: expected a {dtype} array, such as {wanted}")
+        raise InputError(f"out for {name} is {description}: expected a {dtype} array, such as {wanted}")
     if x.shape != shape:
         raise ShapeError(
             f"out for {name} has shape {x.shape}, expected {shape}: pass np.empty({shape})",

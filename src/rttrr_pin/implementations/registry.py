@@ -135,7 +135,10 @@ def is_table(source: Source) -> bool:
 
 
 def _makes(source: Callable[..., Any]) -> bool:
-    """Whether it is a class, or a function of one argument: what makes an implementation of a robot."""
+    """Whether it is a class, or a function of one argument: what makes an implementation of a robot.
+
+    Of a kernel q alone is required, and its other arguments say that it is a function f(q, v, a) all the same.
+    """
     if isinstance(source, type):
         return True
     try:
@@ -143,6 +146,8 @@ def _makes(source: Callable[..., Any]) -> bool:
     except (TypeError, ValueError):  # of a function in C nothing is known
         return False
     positional = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    if [own.name for own in parameters][:3] == ["q", "v", "a"]:
+        return False
     needed = [own for own in parameters if own.default is own.empty and own.kind in positional]
     return len(needed) == 1 and not any(own.kind is own.VAR_POSITIONAL for own in parameters)
 
