@@ -1,0 +1,1 @@
+"""A robot in the browser: frames, bodies, forces, along a trajectory."""
