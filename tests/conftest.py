@@ -14,6 +14,8 @@ from rttrr_pin import Robot
 from rttrr_pin.compile import cache
 from support.serial_chains import EXAMPLES
 
+pytest_plugins = ["support.browser"]
+
 
 @pytest.hookimpl(tryfirst=True)  # before the expression of -m chooses
 def pytest_collection_modifyitems(items: Sequence[pytest.Item]) -> None:
