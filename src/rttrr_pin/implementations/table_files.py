@@ -6,7 +6,7 @@ import csv
 import io
 import itertools
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -36,27 +36,46 @@ Columns: TypeAlias = Mapping[str, "list[str] | np.ndarray[Any, Any]"]
 
 
 def _csv(path: Path, model: Model) -> tuple[Texts, list[int]]:
-    """A header and rows, separated by commas, semicolons or tabs; NumPy writes `# ` before the header."""
-    lines = _lines_of(path)
-    first = next(lines, None)
-    if first is None:
-        raise InputError(f"{path.name} is empty: expected a header and a row for each state")
-    separator = max(",;\t", key=first[1].count)
-    header = _split(path.name, *first, separator)
-    header[0] = header[0].removeprefix("#").strip()
-    column, count = Counter(header).most_common(1)[0]
-    if count > 1:
-        raise InputError(f"{path.name} has the column {shortened(repr(column))} {count} times: name it once")
+    """A header and rows, separated by commas, semicolons or tabs."""
+    lines = lines_of(path)
+    header, separator = header_of(path.name, lines)
     cells, numbers = [], []
     for line_number, line in lines:
-        row = _split(path.name, line_number, line, separator)
-        if len(row) != len(header):
-            raise InputError(f"{path.name}, line {line_number}: {len(row)} cells, and the header has {len(header)}")
-        cells.append(row)
+        cells.append(cells_of(path.name, line_number, line, header, separator))
         numbers.append(line_number)
     if not cells:
         raise InputError(f"{path.name} has a header and no row: add one for each state")
     return dict(zip(header, map(list, zip(*cells, strict=True)), strict=True)), numbers
+
+
+def header_of(name: str, lines: Iterator[tuple[int, str]]) -> tuple[list[str], str]:
+    """The columns that the first line names, and what separates them; NumPy writes `# ` before it.
+
+    Raises:
+        InputError: there is none, or it names a column twice.
+    """
+    first = next(lines, None)
+    if first is None:
+        raise InputError(f"{name} is empty: expected a header and a row for each state")
+    separator = max(",;\t", key=first[1].count)
+    header = _split(name, *first, separator)
+    header[0] = header[0].removeprefix("#").strip()
+    column, count = Counter(header).most_common(1)[0]
+    if count > 1:
+        raise InputError(f"{name} has the column {shortened(repr(column))} {count} times: name it once")
+    return header, separator
+
+
+def cells_of(name: str, line_number: int, line: str, header: Sequence[str], separator: str) -> list[str]:
+    """One row, as long as the header.
+
+    Raises:
+        InputError: it is not.
+    """
+    row = _split(name, line_number, line, separator)
+    if len(row) != len(header):
+        raise InputError(f"{name}, line {line_number}: {len(row)} cells, and the header has {len(header)}")
+    return row
 
 
 def _split(name: str, line_number: int, line: str, separator: str) -> list[str]:
@@ -68,10 +87,28 @@ def _split(name: str, line_number: int, line: str, separator: str) -> list[str]:
 
 def _json_lines(path: Path, model: Model) -> tuple[Texts, list[int]]:
     """One object a line, with the request and the reply of a program in it (docs/notation.md)."""
-    names, by_name = column_names(model), columns_of(model)
     columns: Texts = {}
     numbers: list[int] = []
-    for line_number, line in _lines_of(path):
+    for line_number, row in objects_of(path, model):
+        for column, text in row.items():
+            columns.setdefault(column, []).append(text)
+        numbers.append(line_number)
+        if not row:
+            break  # no line has columns, and what is missing is said at once
+    if not numbers:
+        raise InputError(f"{path.name} is empty: expected an object for each state")
+    return columns, numbers
+
+
+def objects_of(path: Path, model: Model) -> Iterator[tuple[int, dict[str, str]]]:
+    """The objects of a file of JSON lines, as texts by the columns of docs/notation.md; all have the same.
+
+    Raises:
+        InputError: a line is no such object.
+    """
+    names, by_name = column_names(model), columns_of(model)
+    first: dict[str, str] | None = None
+    for line_number, line in lines_of(path):
         where = f"{path.name}, line {line_number}"
         try:
             entry = json_of(line)
@@ -86,16 +123,10 @@ def _json_lines(path: Path, model: Model) -> tuple[Texts, list[int]]:
             raise InputError(f"{where}: {error}") from error
         except RttrrError as error:
             raise InputError(str(error)) from error
-        if numbers and row.keys() != columns.keys():
+        first = row if first is None else first
+        if row.keys() != first.keys():
             raise InputError(f"{where}: other quantities than in the lines before: write the same in all")
-        for column, text in row.items():
-            columns.setdefault(column, []).append(text)
-        numbers.append(line_number)
-        if not row:
-            break  # no line has columns, and what is missing is said at once
-    if not numbers:
-        raise InputError(f"{path.name} is empty: expected an object for each state")
-    return columns, numbers
+        yield line_number, row
 
 
 def _parquet(path: Path, model: Model) -> tuple[Columns, list[int]]:
@@ -116,7 +147,7 @@ def _parquet(path: Path, model: Model) -> tuple[Columns, list[int]]:
     return columns, list(range(1, table.num_rows + 1))
 
 
-def _lines_of(path: Path) -> Iterator[tuple[int, str]]:
+def lines_of(path: Path) -> Iterator[tuple[int, str]]:
     """The lines that are not blank, with their numbers."""
     try:
         raw = path.open("rb") if path.is_file() else io.BytesIO(read_limited(path, LARGEST_PIPE))

@@ -1,1 +1,27 @@
 """Motion over time: read from files, differentiated, or made; in blocks, so that it may be larger than memory."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rttrr_pin.lazy import lazy
+
+if TYPE_CHECKING:
+    from rttrr_pin.trajectories.arrays import trajectory as trajectory
+    from rttrr_pin.trajectories.block import Block as Block
+    from rttrr_pin.trajectories.block import Differentiation as Differentiation
+    from rttrr_pin.trajectories.findings import Finding as Finding
+    from rttrr_pin.trajectories.read import named as named
+    from rttrr_pin.trajectories.read import read_trajectory as read_trajectory
+    from rttrr_pin.trajectories.stream import Trajectory as Trajectory
+
+__getattr__, __dir__, __all__ = lazy(
+    __name__,
+    {
+        "arrays": ("trajectory",),
+        "block": ("Block", "Differentiation"),
+        "findings": ("Finding",),
+        "read": ("named", "read_trajectory"),
+        "stream": ("Trajectory",),
+    },
+)

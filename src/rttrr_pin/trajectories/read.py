@@ -1,0 +1,80 @@
+"""From a file, or a name, to a trajectory."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from rttrr_pin.core.arguments import path_of
+from rttrr_pin.core.model import Model
+from rttrr_pin.errors import InputError, UnknownNameError, shortened
+from rttrr_pin.robot import Robot
+from rttrr_pin.trajectories.clock import known_unit
+from rttrr_pin.trajectories.rows import Source
+from rttrr_pin.trajectories.stream import Trajectory
+from rttrr_pin.trajectories.text import csv_source, json_source
+from rttrr_pin.urdf.files import note_read
+
+Opener = Callable[[Path, Model, Sequence[str]], Source]
+
+READERS: Mapping[str, Opener] = {".csv": csv_source, ".jsonl": json_source}
+"""By the end of the file's name."""
+
+
+def read_trajectory(
+    path: str | os.PathLike[str],
+    robot: Robot,
+    *,
+    topic: str | None = None,
+    cutoff: float | None = None,
+    time_unit: str | None = None,
+) -> Trajectory:
+    """A trajectory from a file, which is read in blocks.
+
+    Args:
+        path: a table (`.csv`, `.jsonl`, `.parquet`, `.npz`) with `time` or `t`, `q_<joint>`, with or without `v_` and
+            `a_`, with or without columns of a payload.
+        robot: whose trajectory it is.
+        topic: of a bag, where there are several.
+        cutoff: frequency up to which derived rates and accelerations follow the rows [Hz]; None: chosen by the noise.
+        time_unit: "s", "ms", "us" or "ns"; None: by the distance of rows, and a note says so where it is not "s".
+
+    Raises:
+        InputError: the file cannot be read, or its first rows cannot be used.
+        UnknownNameError: a column is of a joint that the robot has not, or the file is of no kind that is known.
+        ImplementationError: a package that the kind of file needs is not installed.
+    """
+    source = open_source(path_of("path", path), robot.model)
+    unit = known_unit(time_unit)
+    return Trajectory(source if unit is None else replace(source, unit=unit), robot.model, cutoff)
+
+
+def open_source(path: Path, model: Model, more: Sequence[str] = ()) -> Source:
+    """The rows of a file, and those of other quantities, such as tau.
+
+    Raises:
+        InputError, UnknownNameError, ImplementationError: as `read_trajectory`.
+    """
+    opener = READERS.get(path.suffix.lower())
+    if opener is None:
+        raise UnknownNameError("kind of trajectory", path.suffix or shortened(path.name), READERS)
+    try:
+        is_file = path.is_file()
+    except (OSError, ValueError) as error:
+        raise InputError(f"{shortened(str(path))} cannot be read: {getattr(error, 'strerror', error)}") from None
+    if not is_file:
+        what = "is no file that can be read twice" if path.exists() else "does not exist"
+        raise InputError(f"{shortened(str(path))} {what}: give a file")
+    note_read(path)
+    return opener(path, model, more)
+
+
+def named(text: str, robot: Robot) -> Trajectory:
+    """What a user calls a trajectory: a file.
+
+    Raises:
+        InputError, UnknownNameError, ImplementationError: as `read_trajectory`.
+    """
+    return read_trajectory(text, robot)
