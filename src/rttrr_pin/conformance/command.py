@@ -78,6 +78,7 @@ def conform(
     quiet: bool,
     junit: str | None,
     html: str | None,
+    figures: str | None,
     badge: str | None,
     full: bool,
     **how: Any,
@@ -98,10 +99,11 @@ def conform(
         result = run(subject, own, chosen, states, seed, precision, not no_diagnose, advance)
     write_json(json, result.to_dict)
     write_text(junit, lambda: text_of_junit(result))
-    if html is not None:
-        from rttrr_pin.conformance.page import write_page
+    if html is not None or figures is not None:
+        from rttrr_pin.conformance.page import conformance_page
+        from rttrr_pin.reporting.html import write_page
 
-        write_page(html, result)
+        write_page(lambda: conformance_page(result), html, figures)
     if badge is not None:
         write_text(badge, lambda: text_of_badge(result, badge))
     show_conformance(result, Output(quiet=quiet or "-" in targets.values()), full)

@@ -7,15 +7,8 @@ import math
 from rttrr_pin.conformance.levels import LEVELS
 from rttrr_pin.conformance.report import HEADS, HISTOGRAM, cells, counts, legend, said
 from rttrr_pin.conformance.results import Conformance
-from rttrr_pin.diagnosis.page import Bars, Page, Rows, by_decades, html, of_longest, points
-from rttrr_pin.reporting.output import write_text
+from rttrr_pin.reporting.html import Bars, Page, Rows, by_decades, of_longest, points
 from rttrr_pin.reporting.results import counted
-
-
-def write_page(target: str, result: Conformance) -> None:
-    """The outcome as a page, to a file or, where that is "-", to stdout."""
-    page = conformance_page(result)
-    write_text(target, lambda: html(page))
 
 
 def conformance_page(result: Conformance) -> Page:
@@ -29,9 +22,14 @@ def conformance_page(result: Conformance) -> Page:
         verdict="PASS" if result.passed else "FAIL",
         tone="agrees" if result.standing.whole else "explained" if result.passed else "unexplained",
         sentence=result.claim(),
-        lists=(*points("What was not passed, and why", why), *points("The levels", levels)),
-        tables=(_levels(result), _histograms(result)),
+        blocks=(
+            *points("What was not passed, and why", why),
+            _levels(result),
+            _histograms(result),
+            *points("The levels", levels),
+        ),
         notes=result.notes,
+        command="conform",
     )
 
 

@@ -47,6 +47,7 @@ def diagnose(
     full: bool,
     json: str | None,
     html: str | None,
+    figures: str | None,
     quiet: bool,
     **run: Any,
 ) -> int:
@@ -82,10 +83,10 @@ def diagnose(
         result = found = _find(loaded, options, states, quiet)
         show = partial(show_diagnosis, found, console, full)
     write_json(json, result.to_dict)
-    if html is not None:
+    if html is not None or figures is not None:
         from rttrr_pin.diagnosis.pages import write_page
 
-        write_page(html, result)
+        write_page(html, result, figures)
     show()
     return AGREE if result.passed else DISAGREE
 

@@ -37,7 +37,15 @@ from rttrr_pin.validation.options import RunOptions
 @page
 @flag("--full", help="Show every difference, and torques joint by joint.")
 def compare(
-    a: str, b: str, states: int, json: str | None, html: str | None, quiet: bool, full: bool, **run: Any
+    a: str,
+    b: str,
+    states: int,
+    json: str | None,
+    html: str | None,
+    figures: str | None,
+    quiet: bool,
+    full: bool,
+    **run: Any,
 ) -> int:
     """Compare two descriptions of one robot: what differs, and what of it changes which torque by how much.
 
@@ -58,9 +66,9 @@ def compare(
         result = compare_robots(first, second, n_states=states, seed=options.seed, progress=advance)
     result = replace(result, robots=(a, b))
     write_json(json, result.to_dict)
-    if html is not None:
+    if html is not None or figures is not None:
         from rttrr_pin.diagnosis.pages import write_page
 
-        write_page(html, result)
+        write_page(html, result, figures)
     show_comparison(result, Output(quiet=quiet or "-" in (json, html)), full)
     return AGREE if result.passed else DISAGREE

@@ -8,10 +8,10 @@ from rttrr_pin.diagnosis.descriptions.compare import Comparison
 from rttrr_pin.diagnosis.descriptions.compare_report import LEGEND, percent, remarks, values_of
 from rttrr_pin.diagnosis.descriptions.compare_report import compared as compared_robots
 from rttrr_pin.diagnosis.logs.log_diagnosis import LogDiagnosis
-from rttrr_pin.diagnosis.page import Bars, Page, Rows, Said, by_decades, html, of_longest, points
 from rttrr_pin.diagnosis.report import compared, place, sentence, told
 from rttrr_pin.diagnosis.results import Cause, Diagnosis, Residual
-from rttrr_pin.reporting.output import write_text
+from rttrr_pin.reporting import html
+from rttrr_pin.reporting.html import Bars, Causes, Page, Rows, Said, by_decades, code, of_longest, points
 
 ALIKE = "The same results in all of these states would have"
 
@@ -25,13 +25,19 @@ OF_TOLERANCE = (
 )
 
 
-def write_page(target: str, result: Diagnosis | LogDiagnosis | Comparison) -> None:
+TEST = "A state as simple as could be found, as a test"
+
+
+def write_page(target: str | None, result: Diagnosis | LogDiagnosis | Comparison, figures: str | None = None) -> None:
     """A result as a page, to a file or, where that is "-", to stdout."""
+    html.write_page(lambda: page_of(result), target, figures)
+
+
+def page_of(result: Diagnosis | LogDiagnosis | Comparison) -> Page:
+    """What its page says."""
     if isinstance(result, Diagnosis):
-        page = diagnosis_page(result)
-    else:
-        page = log_page(result) if isinstance(result, LogDiagnosis) else comparison_page(result)
-    write_text(target, lambda: html(page))
+        return diagnosis_page(result)
+    return log_page(result) if isinstance(result, LogDiagnosis) else comparison_page(result)
 
 
 def diagnosis_page(result: Diagnosis) -> Page:
@@ -44,16 +50,16 @@ def diagnosis_page(result: Diagnosis) -> Page:
         verdict=result.verdict.upper(),
         tone=result.verdict,
         sentence=sentence(result),
-        causes=tuple(map(_said, result.causes)),
-        alike=ALIKE,
-        lists=(
+        blocks=(
+            Causes(tuple(map(_said, result.causes)), ALIKE),
+            *_differences(result.residuals, result.verdict == "explained"),
             *points("Other causes that these states do not tell from it", others),
             *points("What the difference depends on", result.dependence),
             *points("What comes nearest, and how much of the difference it explains", near),
+            *code(TEST, result.counterexample),
         ),
-        tables=_differences(result.residuals, result.verdict == "explained"),
-        code=result.counterexample,
         notes=result.notes,
+        command="diagnose",
     )
 
 
@@ -107,12 +113,15 @@ def log_page(report: LogDiagnosis) -> Page:
         verdict=word,
         tone=report.verdict,
         sentence=rest,
-        causes=tuple(
-            Said(own.sentence, (("explains", percent(own.explains)),), own.alternatives) for own in report.causes
+        blocks=(
+            Causes(
+                tuple(Said(x.sentence, (("explains", percent(x.explains)),), x.alternatives) for x in report.causes),
+                AS_WELL,
+            ),
+            Rows("Measured less modelled tau, before and after", head, tuple(bars), LOG_LEGEND),
         ),
-        alike=AS_WELL,
-        tables=(Rows("Measured less modelled tau, before and after", head, tuple(bars), LOG_LEGEND),),
         notes=report.notes,
+        command="diagnose",
     )
 
 
@@ -126,8 +135,13 @@ def comparison_page(result: Comparison) -> Page:
         verdict=word,
         tone="agrees" if result.passed else "unexplained",
         sentence=rest,
-        tables=(*_effects(result), *_torques(result)),
-        lists=(*points("Why", result.reasons), *points("Also", remarks(result, full=True))),
+        blocks=(
+            *points("Why", result.reasons),
+            *_effects(result),
+            *_torques(result),
+            *points("Also", remarks(result, full=True)),
+        ),
+        command="compare",
     )
 
 

@@ -74,7 +74,10 @@ reading = group(
     package,
 )
 quiet = flag("--quiet", "-q", help="Print nothing but errors.")
-page = target("--html", "a page of its own")
+page = group(
+    target("--html", "a page of its own"),
+    click.option("--figures", metavar="FOLDER", help="Write the pictures of that page as SVG files to this folder."),
+)
 outcome = group(target("--json", "the outcome as JSON"), quiet)
 
 
