@@ -12,8 +12,9 @@ from rttrr_pin.core.batch import blocks
 from rttrr_pin.core.inputs import Coordinates, coordinates, finite, real
 from rttrr_pin.core.payload import Load, Payloads, loads_of
 from rttrr_pin.errors import InputError, ShapeError
+from rttrr_pin.implementations.text_results import PAYLOAD
 from rttrr_pin.robot import Robot
-from rttrr_pin.trajectories.rows import AT_ONCE, PAYLOAD, Rows, Source, documented, numbered
+from rttrr_pin.trajectories.rows import AT_ONCE, Rows, Source, documented, numbered
 from rttrr_pin.trajectories.stream import Trajectory
 
 

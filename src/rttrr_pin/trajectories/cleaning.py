@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from rttrr_pin.core.arrays import Array, norm
 from rttrr_pin.core.model import Model
 from rttrr_pin.errors import InputError
-from rttrr_pin.trajectories.clock import GAP, UNITS, after_gaps, unit_of
+from rttrr_pin.trajectories.clock import GAP, UNITS, unit_of
 from rttrr_pin.trajectories.findings import Findings
 from rttrr_pin.trajectories.rows import Rows, Source
 
@@ -30,6 +30,9 @@ NORMALISED = 1e-9
 
 ALIKE = 1.0
 """A jump by a turn is one by 2 pi and less than this [rad]."""
+
+
+NONE = np.zeros(0, np.int64)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -171,10 +174,11 @@ class Cleaner:
         """Gaps in time: by the usual distance here, since rates may change."""
         steps = np.diff(t, prepend=self._last_time)
         self._last_time = float(t[-1])
+        least, most = float(np.nanmin(steps)), float(np.nanmax(steps))
+        if most <= GAP * least and (len(t) >= FEW or most <= GAP * self.clock.step):
+            return NONE
         usual = float(np.nanmedian(steps)) if len(t) >= FEW else self.clock.step
-        breaks = after_gaps(steps[1:], usual)
-        if steps[0] > GAP * usual:
-            breaks = np.concatenate([[0], breaks])
+        breaks = np.flatnonzero(steps > GAP * usual)
         self.findings.add("gap", "time", numbers[breaks], steps[breaks])
         return breaks
 
@@ -220,9 +224,9 @@ class Cleaner:
 
 def _turns(x: Array, last: float) -> tuple[NDArray[np.int64], Array]:
     """Where an angle jumps by one turn or more, and by how many."""
+    if max(float(x.max()), last) - min(float(x.min()), last) <= np.pi:
+        return NONE, np.zeros(0)
     steps = np.diff(x, prepend=last)
-    if not np.abs(steps).max() > np.pi:
-        return np.zeros(0, np.int64), np.zeros(0)
     turns = np.round(steps / (2 * np.pi))
     jumps = np.flatnonzero((turns != 0.0) & (np.abs(steps - 2 * np.pi * turns) < ALIKE))
     return jumps, turns[jumps]
@@ -240,8 +244,8 @@ def check_limits(model: Model, rows: Rows, labels: Sequence[str], findings: Find
                     bad = sign * (x - limit) > 0.0
                     findings.add(kind, labels[at], rows.numbers[bad], x[bad], sign * x[bad])
             v = rows.values["v"][:, k]
-            speed = np.abs(v)
-            if math.isfinite(own.velocity) and speed.max() > own.velocity > 0.0:
+            if 0.0 < own.velocity < max(v.max(), -v.min()):
+                speed = np.abs(v)
                 bad = speed > own.velocity
                 findings.add("rate limit", joint.name, rows.numbers[bad], v[bad], speed[bad])
         at, k = at + joint.nq, k + joint.nv

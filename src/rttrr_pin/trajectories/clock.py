@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +28,29 @@ BEYOND = 3.0
 
 GAP = 5.0
 """Times the usual distance of two rows: farther apart they are not of one motion."""
+
+
+FAR = 1_000_000
+"""Times beyond it count from the first row: since 1970 a microsecond is lost else."""
+
+
+def origin_of(first: float) -> int:
+    """Where time begins: 0, unless the first time is so large that digits would be lost."""
+    return int(first) if FAR <= abs(first) < math.inf else 0
+
+
+def counted_from(origin: int) -> str:
+    """A note of where time begins; empty where that is 0."""
+    return f"time counts from {origin}" if origin else ""
+
+
+def time_of(column: NDArray[Any], origin: int) -> Array:
+    """A column of numbers as float64, from an origin; integers keep their digits."""
+    if column.dtype.kind in "iu" and origin:
+        column = column - column.dtype.type(origin)
+    elif origin:
+        column = column.astype(np.float64) - origin
+    return np.asarray(column, np.float64)
 
 
 def unit_of(t: Array, values: Mapping[str, Array], model: Model) -> tuple[str, str]:
@@ -65,8 +90,3 @@ def known_unit(unit: str | None) -> float | None:
     if unit not in UNITS:
         raise InputError(f"time_unit is {unit!r}: expected {', '.join(map(repr, UNITS))}", {"time_unit": "--time-unit"})
     return UNITS[unit]
-
-
-def after_gaps(steps: Array, usual: float) -> NDArray[np.int64]:
-    """Indices of the rows before which time has a gap; `steps[k]` is from row k to row k + 1."""
-    return np.flatnonzero(steps > GAP * usual) + 1

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from rttrr_pin.core.model import Model
 from rttrr_pin.errors import InputError, UnknownNameError, listed, shortened
-from rttrr_pin.implementations.text_results import TIMES, payload_columns
+from rttrr_pin.implementations.text_results import PAYLOAD, TIMES, payload_columns
 from rttrr_pin.trajectories.clock import UNITS
 
 WORDS: Mapping[str, tuple[str, ...]] = {
@@ -62,7 +62,7 @@ def columns_of_file(names: Sequence[str], model: Model, file: str, more: Sequenc
         UnknownNameError: a column is of a joint that the robot has not.
     """
     there = set(names)
-    time, unit = _time(names, file)
+    time, unit = time_column(names, file)
     notes: list[str] = []
     labels: dict[str, tuple[str, ...]] = {}
     for key in ("q", "v", "a", *more):
@@ -73,28 +73,45 @@ def columns_of_file(names: Sequence[str], model: Model, file: str, more: Sequenc
         labels[key] = _spelled(style, key, own)
         if style != DOCUMENTED and own:
             notes.append(f"{key} is read from {listed(labels[key], 3)}")
-    loads: list[tuple[int, bool]] = []
-    for (link, in_base), columns in payload_columns(model).items():
-        if there & set(columns):
-            _complete(columns, there, file)
-            labels["payload"] = (*labels.get("payload", ()), *columns)
-            loads.append((model.link_index(link), in_base))
+    loads = payloads_of_file(names, model, file, labels)
     read = {time, *(name for own in labels.values() for name in own)}
     _check_unknown(names, labels, model, file)
     if rest := [shortened(name) for name in names if name not in read]:
         notes.append(f"{'column' if len(rest) == 1 else 'columns'} not read: {listed(rest)}")
-    return Columns(time, unit, labels, tuple(loads), tuple(notes))
+    return Columns(time, unit, labels, loads, tuple(notes))
 
 
-def _time(names: Sequence[str], file: str) -> tuple[str, float | None]:
-    """The column of time, and its unit where its name says it."""
+def payloads_of_file(
+    names: Sequence[str], model: Model, file: str, labels: dict[str, tuple[str, ...]]
+) -> tuple[tuple[int, bool], ...]:
+    """The link of each payload, and whether it is in base axes; their columns are added to `labels`.
+
+    Raises:
+        InputError: some of the six columns of one are missing.
+    """
+    loads: list[tuple[int, bool]] = []
+    there = set(names)
+    for (link, in_base), columns in payload_columns(model).items():
+        if there & set(columns):
+            _complete(columns, there, file)
+            labels[PAYLOAD] = (*labels.get(PAYLOAD, ()), *columns)
+            loads.append((model.link_index(link), in_base))
+    return tuple(loads)
+
+
+def time_column(names: Sequence[str], file: str) -> tuple[str, float | None]:
+    """The column of time, and its unit where its name says it.
+
+    Raises:
+        InputError: there is none, or there are several.
+    """
     pattern = re.compile(rf"({'|'.join(TIME)})(?:_(s|ms|us|ns)| ?\[(s|ms|us|ns)\])?")
     found = [(name, match[2] or match[3]) for name in names if (match := pattern.fullmatch(name))]
     if len(found) > 1:
         raise InputError(f"{file} has several columns of time, {listed(name for name, _ in found)}: leave one of them")
     if not found:
         columns = f"; it has {listed(map(shortened, names), 8)}" if names else ""
-        raise InputError(f"{file} has no column time or t: a trajectory needs the time of each row{columns}")
+        raise InputError(f"{file} has no column time or t: each row needs its time{columns}")
     name, unit = found[0]
     return name, UNITS[unit] if unit else None
 
@@ -152,7 +169,7 @@ def _check_unknown(names: Sequence[str], labels: Mapping[str, tuple[str, ...]], 
     joints = {joint.name for joint in model.joints}
     for key, own in labels.items():
         known = set(own)
-        if key == "payload" or not own or own[0] != DOCUMENTED.format(key=key, label=_first(key, model)):
+        if key == PAYLOAD or not own or own[0] != DOCUMENTED.format(key=key, label=_first(key, model)):
             continue
         for name in names:
             if name.startswith(f"{key}_") and name not in known and name[len(key) + 1 :] not in joints:

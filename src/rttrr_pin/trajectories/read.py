@@ -12,6 +12,8 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.errors import InputError, UnknownNameError, shortened
 from rttrr_pin.robot import Robot
 from rttrr_pin.trajectories.clock import known_unit
+from rttrr_pin.trajectories.npz import npz_source
+from rttrr_pin.trajectories.parquet import parquet_source
 from rttrr_pin.trajectories.rows import Source
 from rttrr_pin.trajectories.stream import Trajectory
 from rttrr_pin.trajectories.text import csv_source, json_source
@@ -19,7 +21,12 @@ from rttrr_pin.urdf.files import note_read
 
 Opener = Callable[[Path, Model, Sequence[str]], Source]
 
-READERS: Mapping[str, Opener] = {".csv": csv_source, ".jsonl": json_source}
+READERS: Mapping[str, Opener] = {
+    ".csv": csv_source,
+    ".jsonl": json_source,
+    ".npz": npz_source,
+    ".parquet": parquet_source,
+}
 """By the end of the file's name."""
 
 

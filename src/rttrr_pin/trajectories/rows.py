@@ -19,8 +19,6 @@ AT_ONCE = 65536
 LINES_AT_ONCE = 8192
 """Rows of text that are read at a time."""
 
-PAYLOAD = "payload"
-
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Rows:

@@ -10,11 +10,12 @@ import numpy as np
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load
 from rttrr_pin.errors import InputError
+from rttrr_pin.implementations.text_results import PAYLOAD
 from rttrr_pin.reporting.results import Summarised
 from rttrr_pin.trajectories.block import Block, Differentiation
 from rttrr_pin.trajectories.cleaning import Cleaner, check_limits, clock_of
 from rttrr_pin.trajectories.findings import Finding, Findings
-from rttrr_pin.trajectories.rows import PAYLOAD, Rows, Source
+from rttrr_pin.trajectories.rows import Rows, Source
 
 BLOCK = 4096
 """Rows of a block, unless others are wanted."""

@@ -15,14 +15,12 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.errors import InputError
 from rttrr_pin.implementations.table import numbers_of_columns
 from rttrr_pin.implementations.table_files import cells_of, header_of, lines_of, objects_of
+from rttrr_pin.trajectories.clock import counted_from, origin_of
 from rttrr_pin.trajectories.columns import Columns, columns_of_file
 from rttrr_pin.trajectories.rows import LINES_AT_ONCE, Rows, Source
 
 WHOLE = re.compile(r"([+-]?\d{1,30})(?:\.(\d{0,30}))?")
 """A number whose digits before and behind the point are kept apart: together they may be more than float64 has."""
-
-FAR = 1_000_000
-"""Times beyond it count from the first row: since 1970 a microsecond is lost else."""
 
 
 def csv_source(path: Path, model: Model, more: Sequence[str] = ()) -> Source:
@@ -76,7 +74,6 @@ def json_source(path: Path, model: Model, more: Sequence[str] = ()) -> Source:
 
 
 def _source(path: Path, columns: Columns, origin: int, read: Callable[[], Iterator[Rows]]) -> Source:
-    counted = f"time counts from {origin}" if origin else ""
     return Source(
         path.name,
         lambda findings: read(),
@@ -84,7 +81,7 @@ def _source(path: Path, columns: Columns, origin: int, read: Callable[[], Iterat
         columns.loads,
         "line",
         columns.unit,
-        counted,
+        counted_from(origin),
         None,
         columns.notes,
     )
@@ -137,10 +134,8 @@ def _time(text: str, origin: int) -> float:
 
 
 def _origin(text: str) -> int:
-    """Where time begins: 0, unless the first time is so large that digits would be lost."""
     match = WHOLE.fullmatch(text)
     try:
-        first = int(match[1]) if match else int(float(text))
+        return int(match[1]) if match and origin_of(int(match[1])) else origin_of(float(text))
     except (ValueError, OverflowError):
         return 0
-    return first if abs(first) >= FAR else 0
