@@ -28,7 +28,11 @@ def arm() -> Robot:
 
 def table(arm: Robot, **more: Any) -> dict[str, np.ndarray]:
     arrays = excitation(arm.model, T, 3)
-    own = {f"{key}_{name}": x for key, y in zip("qva", arrays, strict=True) for name, x in zip(arm.joint_names, y.T)}
+    own = {
+        f"{key}_{name}": x
+        for key, y in zip("qva", arrays, strict=True)
+        for name, x in zip(arm.joint_names, y.T, strict=True)
+    }
     return {"time": T} | own | more
 
 
@@ -93,7 +97,8 @@ def test_each_kind_of_file_gives_what_was_written(arm: Robot, tmp_path: Path, ki
 @pytest.mark.parametrize("kind", ["csv", "parquet", "npz", "npz of arrays"])
 def test_payloads_are_columns(arm: Robot, tmp_path: Path, kind: str) -> None:
     wrench = {
-        f"payload_{key}_tool_{axis}": np.arange(300.0) + k for k, (key, axis) in enumerate(zip("fffnnn", "xyzxyz"))
+        f"payload_{key}_tool_{axis}": np.arange(300.0) + k
+        for k, (key, axis) in enumerate(zip("fffnnn", "xyzxyz", strict=True))
     }
     read = read_trajectory(WRITERS[kind](tmp_path / "x", table(arm, **wrench)), arm)
     (load,) = next(read.blocks()).payload

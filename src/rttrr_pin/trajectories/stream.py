@@ -44,7 +44,7 @@ class Trajectory(Summarised):
         self.name, self.model, self.n_rows = source.name, model, source.n_rows
         self._source, self._cutoff = source, cutoff
         self._findings = Findings(source.place)
-        self._record = Record.of(source, model, cutoff)
+        self._record = Record.of_source(source, model, cutoff)
         self._clock = clock_of(source, model)
         self.notes = (*source.notes, *filter(None, [source.origin, self._clock.note]))
 
@@ -75,12 +75,10 @@ class Trajectory(Summarised):
         from rttrr_pin.trajectories.derivatives import Record, derived
 
         self._findings = findings = Findings(self._source.place)
-        self._record = record = Record.of(self._source, self.model, self._cutoff)
+        self._record = record = Record.of_source(self._source, self.model, self._cutoff)
         parts = Cleaner(self._source, self.model, self._clock, findings).parts()
         start = 0
-        whole = (
-            ((part.rows, None) for part in parts) if record is None else derived(parts, record, self._clock, findings)
-        )
+        whole = ((part.rows, None) for part in parts) if record is None else derived(parts, record, findings)
         for rows, errors in whole:
             check_limits(self.model, rows, self._source.labels["q"], findings)
             q, v, a = (rows.values[key] for key in "qva")

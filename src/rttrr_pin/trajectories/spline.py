@@ -1,0 +1,298 @@
+"""Splines by least squares: rates and accelerations of sampled motion, and how well they are known.
+
+A quintic spline is fitted to the rows of a window. How far apart its knots are is chosen by generalised
+cross-validation (Craven and Wahba, 1979), whose count of parameters is taken 1.4 times against fits that follow the
+noise (Kim and Gu, 2004). A fit is a linear operator on the rows, so that the covariance of its error by the noise is
+known; of what the spline cannot follow, splines of wider knots tell how much there is.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rttrr_pin.core.arrays import Array
+
+if TYPE_CHECKING:
+    from scipy.sparse import csr_array
+
+    Sparse: TypeAlias = csr_array
+
+DEGREE = 5
+
+ORDER = DEGREE + 1
+"""B-splines that are not zero at a time."""
+
+FINEST = 2.0
+"""Rows between two knots, at least."""
+
+FEWEST = 40
+"""Rows in a row without which nothing is fitted."""
+
+COUNTED = 1.4
+"""How often a parameter counts in cross-validation."""
+
+DENSER = 1
+"""Steps of `_spans` by which knots are denser than cross-validation has them: what is chosen for x is smooth for a."""
+
+EVEN = 1e-3
+"""Of a step: times that are nearer than this to even ones are taken as even; that is noise as any other."""
+
+LEAST = 2.0 * float(np.finfo(np.float64).eps)
+"""Relative: numbers have no less noise than by their own rounding."""
+
+QUARTER = 0.25
+"""What knots twice as far apart cannot follow counts by half (its square by a quarter): these can follow more."""
+
+
+MULTIPLE = 0.02
+"""How far numbers may be from whole ones by rounding and still be multiples of a step."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Fit:
+    """Signals as splines at the times of their samples.
+
+    Attributes:
+        orders: the spline, its first and its second derivative, (N, columns, 3).
+        covariance: of their errors, (N, columns, 3, 3).
+        noise: standard deviation of the samples from the spline, (columns,).
+        knots: distance of knots, (columns,) [s].
+    """
+
+    orders: Array
+    covariance: Array
+    noise: Array
+    knots: Array
+
+
+class Operator:
+    """The fit of splines with even knots to samples at given times, whatever the samples."""
+
+    def __init__(self, times: Array, spans: int) -> None:
+        self.times, self.spans = times, spans
+        inner = np.linspace(times[0], times[-1], spans + 1)[1:-1]
+        self.knots = np.concatenate([[times[0]] * ORDER, inner, [times[-1]] * ORDER])
+
+    @property
+    def apart(self) -> float:
+        """The distance of knots."""
+        return float(self.times[-1] - self.times[0]) / self.spans
+
+    @property
+    def parameters(self) -> int:
+        """Coefficients of a spline."""
+        return self.spans + DEGREE
+
+    @cached_property
+    def basis(self) -> tuple[Sparse, Sparse, Sparse]:
+        """Values of B-splines and of their first two derivatives, (N, parameters) each."""
+        return self._basis(0), self._basis(1), self._basis(2)
+
+    def _basis(self, order: int) -> Sparse:
+        from scipy.interpolate import BSpline  # half a second, which other features do not need
+        from scipy.sparse import csr_array, diags_array
+
+        knots, degree = self.knots[order : len(self.knots) - order], DEGREE - order
+        own = csr_array(BSpline.design_matrix(self.times, knots, degree))
+        for k in range(order, 0, -1):  # the derivative's coefficients are divided differences
+            knots, degree = self.knots[k - 1 : len(self.knots) - k + 1], DEGREE - k + 1
+            count = len(knots) - degree - 1
+            weights = degree / (knots[degree + 1 : degree + count] - knots[1:count])
+            own = own @ diags_array([-weights, weights], offsets=[0, 1], shape=(count - 1, count))
+        return csr_array(own)
+
+    @cached_property
+    def factor(self) -> Array | None:
+        """Of the normal equations, banded; None where samples are too few between some knots."""
+        from scipy.linalg import cholesky_banded
+
+        B = self._values
+        normal = B.T @ B
+        banded = np.zeros((ORDER, self.parameters))
+        for k in range(min(ORDER, self.parameters)):
+            banded[k, : self.parameters - k] = normal.diagonal(-k)
+        try:
+            return np.asarray(cholesky_banded(banded, lower=True))
+        except np.linalg.LinAlgError:
+            return None
+
+    @cached_property
+    def _values(self) -> Sparse:
+        return self._basis(0)
+
+    def solved(self, right: Array) -> Array:
+        """Solutions of the normal equations."""
+        from scipy.linalg import cho_solve_banded
+
+        return np.asarray(cho_solve_banded((self.factor, True), right))
+
+    def coefficients(self, x: Array) -> Array:
+        """Of the splines nearest to signals (N, columns)."""
+        return self.solved(self._values.T @ x)
+
+    def values(self, coefficients: Array) -> Array:
+        """Of splines at the times, (N, columns)."""
+        return np.asarray(self._values @ coefficients)
+
+    @cached_property
+    def covariance(self) -> Array:
+        """Of value, first and second derivative at each time, for noise of standard deviation 1, (N, 3, 3)."""
+        inverse = self.solved(np.eye(self.parameters))
+        place = np.clip(np.searchsorted(self.knots[ORDER:-ORDER], self.times, side="right"), 0, self.spans - 1)
+        near = place[:, None] + np.arange(ORDER)
+        rows = np.zeros((len(self.times), 3, ORDER))
+        for order, basis in enumerate(self.basis):
+            entries = basis.tocoo()
+            at = entries.col - place[entries.row]
+            inside = (at >= 0) & (at < ORDER)
+            rows[entries.row[inside], order, at[inside]] = entries.data[inside]
+        blocks = np.stack([inverse[k : k + ORDER, k : k + ORDER] for k in range(self.spans)])
+        assert near.max() < self.parameters
+        return np.asarray(rows @ blocks[place] @ rows.transpose(0, 2, 1))
+
+
+@lru_cache(maxsize=64)
+def _even(count: int, spans: int) -> Operator:
+    """Of times 0, 1, 2, ...: all windows of as many even rows share it."""
+    return Operator(np.arange(count, dtype=np.float64), spans)
+
+
+class Window:
+    """Operators of a window by their number of spans; times are counted in steps."""
+
+    def __init__(self, t: Array) -> None:
+        self.count = len(t)
+        self.step = float(t[-1] - t[0]) / (len(t) - 1)
+        u = (t - t[0]) / self.step
+        self._even = bool(np.abs(u - np.arange(len(t))).max() < EVEN)
+        self._times = u
+        self._own: dict[int, Operator] = {}
+
+    def operator(self, spans: int) -> Operator:
+        """The fit with so many spans."""
+        if self._even:
+            return _even(self.count, spans)
+        if spans not in self._own:
+            self._own[spans] = Operator(self._times, spans)
+        return self._own[spans]
+
+    def spans(self) -> list[int]:
+        """Numbers of spans to choose from, the most first: knots are sqrt(2) as far apart from one to the next."""
+        steps = self.count - 1
+        count = max(1, math.ceil(2 * math.log2(max(steps / 2 / FINEST, 1.0))))
+        return _spans(steps, [FINEST * 2 ** (k / 2) for k in range(count + 1)])
+
+    def at_cutoff(self, cutoff: float) -> list[int]:
+        """The number of spans of a cut-off [Hz], and two wider ones."""
+        apart = 0.5 / cutoff / self.step
+        return _spans(self.count - 1, [apart, apart * math.sqrt(2.0), apart * 2.0])
+
+
+def _spans(steps: int, apart: Sequence[float]) -> list[int]:
+    return sorted({min(max(1, round(steps / own)), steps // 2) for own in apart}, reverse=True)
+
+
+def fitted(t: Array, x: Array, cutoff: float | None = None) -> Fit:
+    """Splines of signals (N, columns) sampled at increasing times (N,), at least `FEWEST` of them.
+
+    Args:
+        t: times [s].
+        x: signals.
+        cutoff: frequency up to which splines follow [Hz]; None: chosen by the noise.
+    """
+    window = Window(t)
+    spans = window.spans() if cutoff is None else window.at_cutoff(cutoff)
+    base = x[0]
+    tries = [_try(window.operator(own), x - base) for own in spans]
+    chosen = _chosen(np.stack([score for score, _, _ in tries]), cutoff)
+    columns = x.shape[1]
+    orders, covariance = np.empty((len(t), columns, 3)), np.zeros((len(t), columns, 3, 3))
+    noise, knots = np.empty(columns), np.empty(columns)
+    scale = window.step ** -np.arange(3.0)
+    grain = np.array([_grain(own) for own in x.T])
+    for k in sorted(set(chosen.tolist())):
+        own = np.flatnonzero(chosen == k)
+        near = [j for j in range(k, min(k + 3, len(spans))) if np.isfinite(tries[j][0]).all()]
+        operators = [window.operator(spans[j]) for j in near]
+        fits = [_orders(operator, tries[j][2][:, own]) for operator, j in zip(operators, near, strict=True)]
+        rounding = LEAST * np.abs(x[:, own]).max(axis=0)
+        sigma = np.sqrt(tries[k][1][own] ** 2 + rounding**2)
+        sigma = np.maximum(sigma, grain[own])
+        off = _unfollowed(operators, fits, sigma**2)
+        off[..., 0] += grain[own] ** 2  # a step of a sensor is no noise while it stands still
+        covariance[:, own] = operators[0].covariance[:, None] * sigma[:, None, None] ** 2
+        covariance[:, own[:, None], range(3), range(3)] += off
+        orders[:, own] = fits[0] * scale
+        noise[own], knots[own] = sigma, operators[0].apart * window.step
+    orders[..., 0] += base
+    return Fit(orders, covariance * np.outer(scale, scale), noise, knots)
+
+
+def _try(operator: Operator, x: Array) -> tuple[Array, Array, Array]:
+    """The criterion of cross-validation and the standard deviation of the residual of each column; coefficients."""
+    free, counted = len(x) - operator.parameters, len(x) - COUNTED * operator.parameters
+    never = np.full(x.shape[1], np.inf)
+    if free <= 0 or operator.factor is None:
+        return never, never, np.zeros((operator.parameters, x.shape[1]))
+    c = operator.coefficients(x)
+    squares = ((x - operator.values(c)) ** 2).sum(axis=0)
+    return (squares / counted**2 if counted > 0 else never), np.sqrt(squares / free), c
+
+
+def _chosen(scores: Array, cutoff: float | None) -> NDArray[np.intp]:
+    """Which of the tries is taken for each column."""
+    possible = np.isfinite(scores).all(axis=1)
+    first = int(np.argmax(possible))
+    if cutoff is not None:
+        return np.full(scores.shape[1], first)
+    best: NDArray[np.intp] = np.argmin(scores, axis=0) - DENSER
+    return np.maximum(best, first)
+
+
+def _orders(operator: Operator, coefficients: Array) -> Array:
+    return np.stack([basis @ coefficients for basis in operator.basis], axis=-1)
+
+
+def _unfollowed(operators: Sequence[Operator], fits: Sequence[Array], variance: Array) -> Array:
+    """The square of what a spline cannot follow, about, by what splines of wider knots cannot, (N, columns, 3)."""
+    own, most = np.diagonal(operators[0].covariance, axis1=1, axis2=2), np.zeros(fits[0].shape)
+    for operator, fit, weight in zip(operators[1:], fits[1:], (1.0, QUARTER), strict=False):
+        noise = np.abs(own - np.diagonal(operator.covariance, axis1=1, axis2=2))[:, None] * variance[:, None]
+        apart = _mean((fits[0] - fit) ** 2, 2.0 * operator.apart)
+        most = np.maximum(most, weight * np.maximum(apart - noise, 0.0))
+    return _most(most, 2.0 * operators[0].apart)
+
+
+def _mean(x: Array, width: float) -> Array:
+    """Of neighbours, so many in all."""
+    from scipy.ndimage import uniform_filter1d
+
+    return np.asarray(np.maximum(uniform_filter1d(x, _odd(width, len(x)), axis=0, mode="reflect"), 0.0))
+
+
+def _most(x: Array, width: float) -> Array:
+    """Among neighbours, so many in all."""
+    from scipy.ndimage import maximum_filter1d
+
+    return np.asarray(maximum_filter1d(x, _odd(width, len(x)), axis=0))
+
+
+def _odd(width: float, most: int) -> int:
+    return min(max(int(width), 1), most) | 1
+
+
+def _grain(x: Array) -> float:
+    """The standard deviation of rounding to the steps of a sensor; 0 where samples are no multiples of a step."""
+    values = np.unique(x)
+    if len(values) < 2:
+        return 0.0
+    step = float(np.diff(values).min())
+    multiples = (values - values[0]) / step
+    return step / math.sqrt(12.0) if np.abs(multiples - np.round(multiples)).max() < MULTIPLE else 0.0
