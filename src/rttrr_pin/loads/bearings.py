@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from rttrr_pin.core.arrays import Array, norm
+from rttrr_pin.compile.formula import Formula, Sizes
+from rttrr_pin.core.algebra import Scalar, Vector
+from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joint import Joint
 from rttrr_pin.core.model import Model
 
@@ -28,25 +30,35 @@ def kind(joint: Joint) -> str:
 
 
 def axes(model: Model) -> Array:
-    """The axis of each joint in its own frame, (links, 3); of one that has none z, which a flange's frame has across it
-    by the convention of robots' tool frames (ISO 9409, REP 105's tool0).
-    """
+    """The axis of each joint in its own frame, (links, 3); z where it has none, as tool frames have it (ISO 9409)."""
     own = [joint.axis if joint.type.has_direction else Z for joint in model.joints]
     return np.array(own, dtype=float).reshape(-1, 3)
 
 
-def parts_of(f: Array, n: Array, u: Array) -> dict[str, Array]:
-    """Radial, axial, tilting and torsion of f and n, (N, links, 3), about the axes u, (links, 3), each (links, N)."""
-    along_f, across_f = _split(f, u)
-    along_n, across_n = _split(n, u)
-    return {"radial": across_f, "axial": along_f, "tilting": across_n, "torsion": along_n}
+class Parts:
+    """Radial, axial, tilting and torsion of what crosses the joints of a robot, compiled."""
+
+    def __init__(self, model: Model) -> None:
+        own = axes(model).tolist()
+        width, links = 3 * len(own), len(own)
+
+        def parts(sizes: Sizes, given: Mapping[str, Sequence[Scalar]]) -> dict[str, list[Scalar]]:
+            pairs = [
+                [_split(Vector(*axis), given[name][3 * i : 3 * i + 3], sizes) for i, axis in enumerate(own)]
+                for name in "fn"
+            ]
+            columns = [[pair[k] for pair in of] for of in pairs for k in (1, 0)]
+            return dict(zip(PARTS, columns, strict=True))
+
+        self._formula = Formula(parts, {"f": width, "n": width}, dict.fromkeys(PARTS, links), f"bearings {own}")
+
+    def __call__(self, f: Array, n: Array) -> dict[str, Array]:
+        """The parts of f and n, (N, links, 3), each (links, N)."""
+        return self._formula(len(f), {"f": f.reshape(len(f), -1), "n": n.reshape(len(n), -1)})
 
 
-def _split(vectors: Array, u: Array) -> tuple[Array, Array]:
+def _split(u: Vector, components: Sequence[Scalar], sizes: Sizes) -> tuple[Scalar, Scalar]:
     """The component along an axis, and the size of what is across it."""
-    x, y, z = (np.ascontiguousarray(vectors[..., k].T) for k in range(3))
-    u_x, u_y, u_z = (u[:, k, None] for k in range(3))
-    with np.errstate(over="ignore", invalid="ignore"):
-        along = x * u_x + y * u_y + z * u_z
-        across = norm(np.stack([x - along * u_x, y - along * u_y, z - along * u_z], axis=-1))
-    return along, across
+    vector = Vector(*components)
+    along = u.dot(vector)
+    return along, sizes.norm(vector - u * along)

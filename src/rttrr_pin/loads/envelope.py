@@ -10,12 +10,12 @@ from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 from rttrr_pin.loads.bearings import PARTS, UNITS, axes, kind
 from rttrr_pin.loads.evaluation import Values
-from rttrr_pin.loads.parts import BAND, BearingLoad, JointLoad, Level, Peak
+from rttrr_pin.loads.parts import BAND, BearingLoad, JointLoad, Peak
 from rttrr_pin.loads.quantities import force_units, rate_units
 from rttrr_pin.loads.ratings import Ratings
-from rttrr_pin.loads.rows import Rows
 from rttrr_pin.loads.states import States
 from rttrr_pin.loads.sums import Means, Peaks, Place
+from rttrr_pin.trajectories import Block
 
 
 class JointEnvelope:
@@ -29,15 +29,14 @@ class JointEnvelope:
         self._given, self._taken = np.zeros((2, nv))
         self._coordinates = _coordinates(model)
 
-    def add(self, rows: Rows, values: Values) -> None:
-        """Rows more, with their tau."""
-        assert rows.weights is not None
+    def add(self, rows: Block, weights: Array, values: Values) -> None:
+        """Block more, with their tau."""
         forces, rates = (np.ascontiguousarray(x.T) for x in (values["tau"], rows.v))
         sizes, speeds = np.abs(forces), np.abs(rates)
-        self._means.add(sizes, rows.weights, speeds)
+        self._means.add(sizes, weights, speeds)
         with np.errstate(over="ignore", invalid="ignore"):
             power = forces * rates
-            work = power * rows.weights
+            work = power * weights
             self._given += np.maximum(work, 0.0).sum(axis=1)
             self._taken += np.maximum(-work, 0.0).sum(axis=1)
         self._count_reversals(rates, rows.errors)
@@ -90,7 +89,7 @@ class JointEnvelope:
                 limits=limits[j],
                 lowest=_peak(peaks["lowest"][j]) if one else None,
                 highest=_peak(peaks["highest"][j]) if one else None,
-                gear=rating and rating.life(float(speeds[j]), by_rate[j]),
+                gear=None if rating is None else rating.life(float(speeds[j]), by_rate[j]),
             )
 
 
@@ -102,13 +101,12 @@ class BearingEnvelope:
         self._peaks = {name: Peaks(len(model.links)) for name in PARTS}
         self._means = {name: Means(len(model.links)) for name in PARTS}
 
-    def add(self, rows: Rows, values: Values) -> None:
-        """Rows more, with the parts of what crosses their joints."""
-        assert rows.weights is not None
+    def add(self, rows: Block, weights: Array, values: Values) -> None:
+        """Block more, with the parts of what crosses their joints."""
         for name in PARTS:
             own = np.ascontiguousarray(values[name].T)
             sizes = np.abs(own)
-            self._means[name].add(sizes, rows.weights)
+            self._means[name].add(sizes, weights)
             self._peaks[name].add(sizes, own, rows)
 
     def marked(self) -> Iterator[tuple[str, Place]]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from typing import Any
 
@@ -18,11 +17,11 @@ from rttrr_pin.core.scalars import FLOAT, columns
 from rttrr_pin.core.tangent import tangent
 from rttrr_pin.core.wrench import LINK_QUANTITIES
 from rttrr_pin.errors import NumberError
-from rttrr_pin.loads.bearings import PARTS, axes, parts_of
+from rttrr_pin.loads.bearings import PARTS, Parts
 from rttrr_pin.loads.parts import BAND
 from rttrr_pin.loads.quantities import CROSSING, SAID
-from rttrr_pin.loads.rows import Rows
 from rttrr_pin.robot import Robot
+from rttrr_pin.trajectories import Block
 
 Values = dict[str, Array]
 """By name of a quantity, (N, nv) or (N, links, 3)."""
@@ -33,7 +32,6 @@ class Evaluator:
 
     Attributes:
         names: what it computes: tau, and what else was asked for.
-        seconds: spent in the kernel so far.
     """
 
     def __init__(
@@ -48,13 +46,12 @@ class Evaluator:
             convention: of `SAID`.
         """
         self._model, self._convention, self._trajectory = robot.model, convention, trajectory
-        self._axes = axes(robot.model)
         self.names = tuple(dict.fromkeys(("tau", *names)))
         links = {*LINK_QUANTITIES} & {*self.names} | ({*CROSSING} if {*SAID, *PARTS} & {*self.names} else set())
         self._kernel: Kernel[Any] = robot.compile(("tau", *(name for name in LINK_QUANTITIES if name in links)))
-        self.seconds = 0.0
+        self._parts = Parts(robot.model) if {*PARTS} & {*self.names} else None
 
-    def of(self, rows: Rows) -> Values:
+    def of(self, rows: Block) -> Values:
         """The quantities of rows, but for energy, which is no matter of one row.
 
         Raises:
@@ -65,7 +62,7 @@ class Evaluator:
         except NumberError as error:
             raise self._explained(error, rows) from error
 
-    def half_widths(self, rows: Rows) -> Values | None:
+    def half_widths(self, rows: Block) -> Values | None:
         """Half the width of the band of 95 percent of each quantity; None where all was measured.
 
         The error of (q, v, a) of each degree of freedom is L x with a normal vector x of three, independent of the
@@ -85,10 +82,10 @@ class Evaluator:
                 ahead, behind = (self._displaced(rows, directions[j], j, sign * column) for sign in (1.0, -1.0))
                 total = _with_squares(total, ahead, behind)
         if total is None:
-            return {name: np.zeros_like(x) for name, x in self.of(rows[:]).items()}
+            return {name: np.zeros_like(x) for name, x in self.of(rows).items()}
         return {name: BAND * np.sqrt(x) for name, x in total.items()}
 
-    def _displaced(self, rows: Rows, direction: Direction, j: int, step: Array) -> Values:
+    def _displaced(self, rows: Block, direction: Direction, j: int, step: Array) -> Values:
         q = _moved(self._model, rows.q, direction, step[:, 0])
         v, a = rows.v.copy(order="K"), rows.a.copy(order="K")
         v[:, j] += step[:, 1]
@@ -99,20 +96,18 @@ class Evaluator:
             raise self._explained(error, rows) from error
 
     def _at(self, q: Array, v: Array, a: Array, payload: tuple[Load, ...]) -> Values:
-        started = time.perf_counter()
         values: Values = self._kernel(q, v, a, payload or None)
-        self.seconds += time.perf_counter() - started
         if "power" in self.names:
             with np.errstate(over="ignore"):
                 values["power"] = values["tau"] * v
         if self._convention is not None:
             said = joint_wrenches(self._convention, self._model, q, values["f"], values["n"])
             values |= {"force": said.force, "moment": said.moment}
-        if PARTS[0] in self.names:
-            values |= {name: x.T for name, x in parts_of(values["f"], values["n"], self._axes).items()}
+        if self._parts is not None:
+            values |= {name: x.T for name, x in self._parts(values["f"], values["n"]).items()}
         return {name: values[name] for name in self.names}
 
-    def _explained(self, error: NumberError, rows: Rows) -> NumberError:
+    def _explained(self, error: NumberError, rows: Block) -> NumberError:
         """The same error, with the row of the trajectory in place of the state of a block."""
         if not error.index:
             return error

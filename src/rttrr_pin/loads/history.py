@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.loads.results import History, Samples
-from rttrr_pin.loads.rows import Rows
+from rttrr_pin.trajectories import Block
 
 MOST_BUCKETS = 1024
 """Beyond it they are merged in pairs."""
@@ -25,8 +25,8 @@ class Buckets:
         self._size, self._rows = 1, 0
         self._low, self._high, self._time = (np.zeros((0, 0)),) * 3  # by number, and bucket; first and last time
 
-    def add(self, rows: Rows, tau: Array, half_width: Array | None) -> None:
-        """Rows more.
+    def add(self, rows: Block, tau: Array, half_width: Array | None) -> None:
+        """Block more.
 
         Args:
             rows: theirs is the time.
@@ -84,8 +84,8 @@ class Sampling:
         self._step, self._count = 1, 0
         self._parts: list[tuple[NDArray[Any], ...]] = []
 
-    def add(self, rows: Rows, tau: Array) -> None:
-        """Rows more, with tau (N, nv)."""
+    def add(self, rows: Block, tau: Array) -> None:
+        """Block more, with tau (N, nv)."""
         every = slice(-rows.start % self._step, None, self._step)
         part = tuple(x[every].copy() for x in (rows.rows, rows.time, rows.q, rows.v, tau))
         self._parts.append(part)

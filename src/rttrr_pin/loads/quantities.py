@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from math import prod
 
 from rttrr_pin.core.arguments import names_of
+from rttrr_pin.core.conventions import Convention
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.wrench import LINK_QUANTITIES
 from rttrr_pin.errors import InputError, UnknownNameError
@@ -35,7 +36,7 @@ class Field:
         shape: of what belongs to one row.
         columns: the names of its numbers, the last axis fastest.
         units: theirs.
-        kind: of its numbers: "float", "int32", "uint32" or "text".
+        kind: of its numbers: "float", "int32", "uint32" or "string", as Parquet calls them.
     """
 
     name: str
@@ -53,12 +54,12 @@ class Field:
 TIME = Field("time", (), ("time",), ("s",))
 
 
-def checked(quantities: str | Sequence[str], convention: str | None) -> tuple[str, ...]:
+def checked(quantities: str | Sequence[str]) -> tuple[str, ...]:
     """The quantities, in the order in which they are written.
 
     Raises:
         UnknownNameError: there is no such quantity.
-        InputError: none is named, or a convention where nothing crosses a joint.
+        InputError: none is named.
     """
     names = names_of("quantities", quantities)
     for name in names:
@@ -66,17 +67,25 @@ def checked(quantities: str | Sequence[str], convention: str | None) -> tuple[st
             raise UnknownNameError("quantity", name, ASKED)
     if not names:
         raise InputError(f"quantities is empty: name at least one of {', '.join(ASKED)}")
-    if convention is not None and not {*CROSSING} & {*names}:
-        raise InputError(
-            f"convention {convention!r} says how f and n are written, and neither is asked for: add f or n",
-            options={"convention": "--convention"},
-        )
     return tuple(name for name in ASKED if name in names)
 
 
-def written(quantities: Sequence[str], convention: str | None) -> tuple[str, ...]:
+def check_convention(quantities: Sequence[str], row: Convention | None) -> None:
+    """A convention is of what crosses joints.
+
+    Raises:
+        InputError: nothing of that is asked for.
+    """
+    if row is not None and not {*CROSSING} & {*quantities}:
+        raise InputError(
+            f"convention {row.name!r} says how f and n are written, and neither is asked for: add f or n",
+            options={"convention": "--convention"},
+        )
+
+
+def written(quantities: Sequence[str], row: Convention | None) -> tuple[str, ...]:
     """The quantities by the names of their arrays: f and n are force and moment in another convention."""
-    said = dict(zip(CROSSING, SAID, strict=True)) if convention is not None else {}
+    said = {} if row is None else dict(zip(CROSSING, SAID, strict=True))
     return tuple(said.get(name, name) for name in quantities)
 
 

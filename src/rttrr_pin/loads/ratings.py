@@ -21,7 +21,11 @@ LARGEST_FILE = 2**20
 RPM = 60.0 / (2.0 * math.pi)
 """Revolutions per minute in one radian per second."""
 
-EXAMPLE = "[joint_1]\nratio = 100\nrated_torque = 67     # N m, of the output\nrated_speed = 2000    # rpm, of the input\nrated_life = 35000    # h"
+EXAMPLE = """[joint_1]
+ratio = 100
+rated_torque = 67     # N m, of the output
+rated_speed = 2000    # rpm, of the input
+rated_life = 35000    # h"""
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -104,6 +104,7 @@ class LoadReport(Summarised):
         samples: rows spread over the trajectory.
         states: those that matter.
         outputs: the files that were written.
+        wall_time: by what was done, and in all [s].
     """
 
     robot: str
@@ -124,6 +125,7 @@ class LoadReport(Summarised):
     samples: Samples
     states: tuple[NamedState, ...]
     outputs: tuple[str, ...] = ()
+    wall_time: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def passed(self) -> bool:
@@ -149,10 +151,21 @@ class LoadReport(Summarised):
 
     def to_dict(self) -> dict[str, Any]:
         """Everything as data for JSON."""
-        own = ("robot", "trajectory", "rows", "start", "seconds", "payload", "quantities", "convention", "band")
+        own = (
+            "robot",
+            "trajectory",
+            "rows",
+            "start",
+            "seconds",
+            "payload",
+            "quantities",
+            "convention",
+            "band",
+            "wall_time",
+        )
         shown = {"schema": 1, "passed": self.passed, **{name: getattr(self, name) for name in own}}
         shown["differentiation"] = None if self.differentiation is None else self.differentiation.summary()
-        many = ("notes", "findings", "joints", "bearings", "history", "samples", "states", "outputs")
+        many = ("wall_time", "notes", "findings", "joints", "bearings", "history", "samples", "states", "outputs")
         return finite(shown | {name: _data(getattr(self, name)) for name in many})
 
 
@@ -166,6 +179,8 @@ def _data(x: Any) -> Any:
         return x.tolist()
     if isinstance(x, np.generic):
         return x.item()
+    if isinstance(x, Mapping):
+        return dict(x)
     if isinstance(x, Sequence) and not isinstance(x, str):
         return [_data(item) for item in x]
     if not hasattr(x, "__dataclass_fields__"):

@@ -6,119 +6,70 @@ However a trajectory cuts itself into blocks, sums over them are made of the sam
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, TypeVar
+from dataclasses import replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.payload import Load
-
-if TYPE_CHECKING:
-    from rttrr_pin.trajectories import Block
+from rttrr_pin.trajectories import Block
 
 SIZE = 16_384
 """Rows of a block."""
 
-Number = TypeVar("Number", bound=np.generic)
 
+def weighted(blocks: Iterable[Block], size: int = SIZE) -> Iterator[tuple[Block, Array]]:
+    """Blocks of one size, but for the last, and the time that each row stands for, (N,) [s].
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Rows:
-    """Consecutive rows.
-
-    Attributes:
-        start: index of the first one.
-        rows: as messages name them, (N,).
-        time: (N,) [s].
-        q: (N, nq).
-        v: (N, nv).
-        a: (N, nv).
-        payload: what the robot exerts on its surroundings.
-        errors: as in `Block`; None where all was measured.
-        weights: the time that each row stands for by the trapezoidal rule, (N,) [s].
-    """
-
-    start: int
-    rows: NDArray[np.int64]
-    time: Array
-    q: Array
-    v: Array
-    a: Array
-    payload: tuple[Load, ...] = ()
-    errors: Array | None = None
-    weights: Array | None = None
-
-    def __len__(self) -> int:
-        return len(self.time)
-
-    def __getitem__(self, part: slice) -> Rows:
-        """Some of the rows, whose weights are not known."""
-        return Rows(
-            self.start + (part.start or 0),
-            self.rows[part],
-            *(x[part] for x in (self.time, self.q, self.v, self.a)),
-            tuple(load.block(part) for load in self.payload),
-            None if self.errors is None else self.errors[part],
-        )
-
-
-def weighted(blocks: Iterable[Block], payload: Sequence[Load], size: int = SIZE) -> Iterator[Rows]:
-    """Blocks of one size, but for the last, with weights: half the time between the rows before and behind each.
-
-    Args:
-        blocks: of a trajectory, of any sizes.
-        payload: what the robot exerts beside what the blocks say.
-        size: rows in each.
+    By the trapezoidal rule that is half the time between the rows before and behind it. A trajectory of one row has a
+    weight of 1, so that means are what they are means of.
     """
     before: float | None = None
-    last: Rows | None = None
-    for rows in _aligned((_rows(block, payload) for block in blocks), size):
+    last: Block | None = None
+    for block in _aligned(blocks, size):
         if last is not None:
-            yield _with_weights(last, before, float(rows.time[0]))
+            yield last, _weights(last, before, float(block.time[0]))
             before = float(last.time[-1])
-        last = rows
+        last = block
     if last is not None:
-        yield _with_weights(last, before, None)
+        yield last, _weights(last, before, None)
 
 
-def _rows(block: Block, payload: Sequence[Load]) -> Rows:
-    parts = (block.start, block.rows, block.time, block.q, block.v, block.a)
-    return Rows(*parts, (*payload, *block.payload), block.errors)
-
-
-def _aligned(blocks: Iterable[Rows], size: int) -> Iterator[Rows]:
-    waiting: list[Rows] = []
+def _aligned(blocks: Iterable[Block], size: int) -> Iterator[Block]:
+    waiting: list[Block] = []
     count = 0
     for block in blocks:
+        if not len(block):
+            continue
         waiting.append(block)
         count += len(block)
         if count < size:
             continue
-        whole = joined(waiting)
-        whole_blocks = count // size * size
-        for start in range(0, whole_blocks, size):
-            yield whole[start : start + size]
-        waiting = [whole[whole_blocks:]] if count > whole_blocks else []
-        count -= whole_blocks
+        whole, full = joined(waiting), count // size * size
+        yield from (whole.part(slice(start, start + size)) for start in range(0, full, size))
+        waiting = [whole.part(slice(full, count))] if count > full else []
+        count -= full
     if count:
         yield joined(waiting)
 
 
-def joined(parts: Sequence[Rows]) -> Rows:
-    """Rows behind each other, as one block."""
-    if len(parts) == 1:
-        return parts[0]
-    first = parts[0]
-    errors = None if first.errors is None else np.concatenate([own.errors for own in parts if own.errors is not None])
-    columns = ([getattr(own, name) for own in parts] for name in ("q", "v", "a"))
-    return Rows(
+def joined(blocks: Sequence[Block]) -> Block:
+    """Rows behind each other as one block; blocks of the same payloads."""
+    if len(blocks) == 1:
+        return blocks[0]
+    first = blocks[0]
+    errors = None
+    if first.errors is not None:
+        errors = np.concatenate([own.errors for own in blocks if own.errors is not None])
+    loads = [_joined_loads([own.payload[k] for own in blocks]) for k in range(len(first.payload))]
+    return Block(
         first.start,
-        np.concatenate([own.rows for own in parts]),
-        np.concatenate([own.time for own in parts]),
-        *(_by_columns(x) for x in columns),
-        tuple(_joined_loads([own.payload[k] for own in parts]) for k in range(len(first.payload))),
+        np.concatenate([own.rows for own in blocks]),
+        np.concatenate([own.time for own in blocks]),
+        _by_columns([own.q for own in blocks]),
+        _by_columns([own.v for own in blocks]),
+        _by_columns([own.a for own in blocks]),
+        tuple(loads),
         errors,
     )
 
@@ -137,10 +88,18 @@ def _joined_vectors(parts: Sequence[Array]) -> Array:
     return parts[0] if parts[0].ndim == 1 else np.concatenate(parts)
 
 
-def _with_weights(rows: Rows, before: float | None, behind: float | None) -> Rows:
-    """Trapezoids; a single row stands for itself, with a weight of 1 that says nothing of time."""
-    if len(rows) == 1 and before is None and behind is None:
-        return replace(rows, weights=np.ones(1))
-    first, last = rows.time[0], rows.time[-1]
-    times = np.concatenate([[first if before is None else before], rows.time, [last if behind is None else behind]])
-    return replace(rows, weights=(times[2:] - times[:-2]) / 2)
+def _weights(block: Block, before: float | None, behind: float | None) -> Array:
+    if len(block) == 1 and before is None and behind is None:
+        return np.ones(1)
+    first, last = block.time[0], block.time[-1]
+    times = np.concatenate([[first if before is None else before], block.time, [last if behind is None else behind]])
+    weights: Array = (times[2:] - times[:-2]) / 2
+    return weights
+
+
+def alone(block: Block, k: int) -> Block:
+    """A copy of one row, which does not keep its block in memory."""
+    own = block.part(slice(k, k + 1))
+    rows, time, q, v, a = own.rows.copy(), own.time.copy(), own.q.copy(), own.v.copy(), own.a.copy()
+    loads = tuple(Load(load.link, load.f.copy(), load.n.copy(), load.in_base) for load in own.payload)
+    return Block(own.start, rows, time, q, v, a, loads, None if own.errors is None else own.errors.copy())

@@ -7,12 +7,13 @@ from collections.abc import Iterable
 from rttrr_pin.loads.evaluation import Evaluator, Values
 from rttrr_pin.loads.parts import Peak
 from rttrr_pin.loads.results import NamedState
-from rttrr_pin.loads.rows import Rows, joined
+from rttrr_pin.loads.rows import joined
 from rttrr_pin.loads.sums import Place
+from rttrr_pin.trajectories import Block
 
 
 class States:
-    """Rows where something is largest, in the order of the trajectory.
+    """Block where something is largest, in the order of the trajectory.
 
     Attributes:
         rows: one block of them all.
@@ -28,8 +29,10 @@ class States:
             evaluator: of what is to be known there.
         """
         reasons: dict[int, list[str]] = {}
-        alone: dict[int, Rows] = {}
+        alone: dict[int, Block] = {}
         for reason, place in marked:
+            if place.value == 0.0:  # everywhere: no row matters for it
+                continue
             reasons.setdefault(place.at.start, []).append(reason)
             alone[place.at.start] = place.at
         order = sorted(alone)
@@ -41,14 +44,14 @@ class States:
 
     def peak(self, place: Place, quantity: str = "", column: int = 0) -> Peak:
         """A peak at one of the states, with half the width of the band of a column of a quantity."""
-        k = self._index[place.at.start]
+        k = self._index.get(place.at.start) if place.value != 0.0 else None
         error = None
-        if quantity and self._half_widths is not None:
+        if quantity and k is not None and self._half_widths is not None:
             error = float(self._half_widths[quantity][k, column])
         return Peak(place.value, int(place.at.rows[0]), float(place.at.time[0]), error, k)
 
 
-def _named(name: str, at: Rows) -> NamedState:
+def _named(name: str, at: Block) -> NamedState:
     payload = tuple(load.block(slice(0, 1)) for load in at.payload)
     flat = (type(load)(load.link, load.f.reshape(3), load.n.reshape(3), load.in_base) for load in payload)
     return NamedState(name, int(at.rows[0]), float(at.time[0]), at.q[0], at.v[0], at.a[0], tuple(flat))

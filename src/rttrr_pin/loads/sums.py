@@ -8,12 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from rttrr_pin.core.arrays import Array
-from rttrr_pin.core.payload import Load
 from rttrr_pin.loads.parts import Level, Peak
-from rttrr_pin.loads.rows import Rows
+from rttrr_pin.loads.rows import alone
+from rttrr_pin.trajectories import Block
 
-LOWEST = -1074
-"""The exponent of the smallest float64."""
+LOWEST = -1000
+"""An exponent so low that no power of what is smaller vanishes, once divided by two to it."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -26,7 +26,7 @@ class Place:
     """
 
     value: float
-    at: Rows
+    at: Block
 
 
 class Peaks:
@@ -36,7 +36,7 @@ class Peaks:
         self._places: list[Place | None] = [None] * count
         self._largest = np.full(count, -np.inf)
 
-    def add(self, sizes: Array, values: Array, rows: Rows) -> None:
+    def add(self, sizes: Array, values: Array, rows: Block) -> None:
         """Rows more.
 
         Args:
@@ -55,17 +55,9 @@ class Peaks:
             self._places[k] = Place(float(values[k, row]), alone(rows, row))
 
     def seen(self) -> list[Place]:
-        """By column; after a row was added."""
+        """By column; after a row was added. A value of zero is that of the first row, and no reason to remember it."""
         assert None not in self._places
         return [place for place in self._places if place is not None]
-
-
-def alone(rows: Rows, k: int) -> Rows:
-    """A copy of one row, which does not keep its block in memory."""
-    own = rows[k : k + 1]
-    arrays = (x.copy() for x in (own.rows, own.time, own.q, own.v, own.a))
-    loads = tuple(Load(load.link, load.f.copy(), load.n.copy(), load.in_base) for load in own.payload)
-    return Rows(own.start, *arrays, loads, None if own.errors is None else own.errors.copy())
 
 
 class Scale:
@@ -77,10 +69,10 @@ class Scale:
     def add(self, sizes: Array) -> tuple[Array, Array]:
         """Sizes, (n, N), that are not negative, divided; and what sums of earlier ones must be multiplied by, (n,)."""
         _, exponents = np.frexp(sizes.max(axis=1, initial=0.0))
-        larger = np.maximum(self.exponents, np.where(sizes.any(axis=1), exponents, LOWEST))
+        larger = np.maximum(self.exponents, exponents)
         shrink = np.ldexp(1.0, self.exponents - larger)
         self.exponents = larger
-        return np.ldexp(sizes, -larger[:, None]), shrink
+        return sizes * np.ldexp(1.0, -larger)[:, None], shrink
 
 
 class Means:
@@ -118,12 +110,12 @@ class Means:
     @property
     def rms(self) -> Array:
         """(sum w x^2 / sum w)^(1/2)."""
-        return np.ldexp(np.sqrt(self._squares / self._time), self._scale.exponents)
+        return np.asarray(np.ldexp(np.sqrt(self._squares / self._time), self._scale.exponents))
 
     @property
     def cubic(self) -> Array:
         """(sum w |x|^3 / sum w)^(1/3)."""
-        return np.ldexp(np.cbrt(self._cubes / self._time), self._scale.exponents)
+        return np.asarray(np.ldexp(np.cbrt(self._cubes / self._time), self._scale.exponents))
 
     @property
     def cubic_by_rate(self) -> Sequence[float | None]:
@@ -135,7 +127,25 @@ class Means:
     @property
     def mean_rates(self) -> Array:
         """Sum w |v| / sum w."""
-        return np.ldexp(self._rates / self._time, self._rate_scale.exponents)
+        return np.asarray(np.ldexp(self._rates / self._time, self._rate_scale.exponents))
+
+
+class Integral:
+    """The integral over time of columns, row by row, by the trapezoidal rule."""
+
+    def __init__(self) -> None:
+        self._time, self._rates, self._total = 0.0, np.zeros(0), np.zeros(0)
+
+    def add(self, time: Array, rates: Array) -> Array:
+        """The integral up to each of some rows more, (N, n); zero in the first of all."""
+        if not self._rates.size:
+            self._time, self._rates, self._total = float(time[0]), rates[0], np.zeros(rates.shape[1])
+        steps = np.diff(time, prepend=self._time)
+        means = (rates + np.concatenate([self._rates[None], rates[:-1]])) / 2
+        with np.errstate(over="ignore", invalid="ignore"):
+            grown = np.cumsum(np.concatenate([self._total[None], means * steps[:, None]]), axis=0)[1:]
+        self._time, self._rates, self._total = float(time[-1]), rates[-1].copy(), grown[-1].copy()
+        return grown
 
 
 def _sums(terms: Array, weights: Array) -> Array:

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -26,17 +29,50 @@ def write_whole(path: Path, content: str | bytes) -> None:
     Raises:
         InputError: the folder does not exist or cannot be written to.
     """
+    with whole_file(path) as own, writing(path):
+        own.write_bytes(_bytes(content))
+
+
+@contextmanager
+def whole_file(path: Path) -> Iterator[Path]:
+    """A file to write in pieces, which takes the place of `path` once all is written; nothing is left of it else.
+
+    Raises:
+        InputError: the folder does not exist or cannot be written to, or the disk is full.
+    """
     target = Path(os.path.realpath(path))  # a link stays a link
+    special = target.exists() and not target.is_file()  # a pipe or a device is written to, not replaced
+    own: Path | None = None
     try:
-        if target.exists() and not target.is_file():
+        with held_back(), writing(path):  # else a signal could leave a file whose name nobody knows yet
+            handle, name = tempfile.mkstemp(dir=None if special else target.parent, prefix=PARTIAL)
+            own = Path(name)
+            os.close(handle)
+        yield own
+        if special:
             put_in_place(str(path))
-            target.write_bytes(_bytes(content))  # a pipe or a device is written to, not replaced
+            with writing(path), own.open("rb") as source, target.open("wb") as sink:
+                shutil.copyfileobj(source, sink)
             return
-        with held_back():
-            _replace(target, _bytes(content))
+        with held_back(), writing(path):
+            _replace(target, own)
             put_in_place(str(path))
+    finally:
+        if own is not None:
+            own.unlink(missing_ok=True)
+
+
+@contextmanager
+def writing(path: Path) -> Iterator[None]:
+    """Within, what the system refuses is said of this file.
+
+    Raises:
+        InputError: it cannot be written.
+    """
+    try:
+        yield
     except OSError as error:
-        raise InputError(f"{path} cannot be written: {error.strerror}; choose another file") from error
+        raise InputError(f"{path} cannot be written: {error.strerror or error}; choose another file") from error
 
 
 def _bytes(content: str | bytes) -> bytes:
@@ -44,16 +80,9 @@ def _bytes(content: str | bytes) -> bytes:
     return content if isinstance(content, bytes) else content.encode("utf-8", "backslashreplace")
 
 
-def _replace(target: Path, content: bytes) -> None:
-    """A file beside the target, moved there once it is whole."""
-    handle, name = tempfile.mkstemp(dir=target.parent, prefix=PARTIAL)
-    try:
-        with os.fdopen(handle, "wb") as file:
-            file.write(content)
-        umask = os.umask(0)
-        os.umask(umask)
-        Path(name).chmod(target.stat().st_mode & 0o7777 if target.exists() else 0o666 & ~umask)
-        Path(name).replace(target)
-    except BaseException:
-        Path(name).unlink(missing_ok=True)
-        raise
+def _replace(target: Path, whole: Path) -> None:
+    """A file beside the target in its place, with its mode."""
+    umask = os.umask(0)
+    os.umask(umask)
+    whole.chmod(target.stat().st_mode & 0o7777 if target.exists() else 0o666 & ~umask)
+    whole.replace(target)

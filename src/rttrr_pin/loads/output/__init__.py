@@ -1,0 +1,1 @@
+"""Files that loads are written to, in blocks, whole or not at all."""
