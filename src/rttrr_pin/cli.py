@@ -33,6 +33,7 @@ COMMANDS = {
     "compare": "rttrr_pin.diagnosis.compare_command:compare",
     "audit": "rttrr_pin.auditing.command:audit",
     "derive": "rttrr_pin.derivation.command:derive",
+    "loads": "rttrr_pin.loads.command:loads",
     "inspect": "rttrr_pin.inspection.command:inspect",
     "new": "rttrr_pin.modular_arm.command:new",
 }

@@ -57,7 +57,8 @@ payload = click.option(
 payload_frame = group(
     payload_link, click.option("--payload-axes", default="link", help="The axes of the six numbers: link or base.")
 )
-conditions = group(payload_frame, gravity, base, friction, xacro, reading)
+surroundings = group(gravity, base, friction, xacro, reading)
+conditions = group(payload_frame, surroundings)
 drawn = group(seed, sampling, payload, conditions)
 """The states that `validate` draws."""
 
