@@ -35,6 +35,7 @@ COMMANDS = {
     "derive": "rttrr_pin.derivation.command:derive",
     "loads": "rttrr_pin.loads.command:loads",
     "inspect": "rttrr_pin.inspection.command:inspect",
+    "view": "rttrr_pin.viewing.command:view",
     "new": "rttrr_pin.modular_arm.command:new",
 }
 """By name, the function that parses, calls and returns an exit code; a new command is an entry here."""

@@ -96,7 +96,7 @@ def looks_of(link: UrdfLink, folder: Path | None, packages: Mapping[str, Path] =
     volumes: dict[str, list[float]] = {"visual": [], "collision": []}
     missing, solids = [], dict[str, Filled]()
     for shape in link.shapes:
-        solid = _primitive(shape)
+        solid = primitive(shape)
         points, volume = _mesh(shape, folder, packages) if solid is None else (_outline(solid), solid.volume)
         volumes[shape.role].append(volume)
         if len(points) and solid is not None and sum(other.role == shape.role for other in link.shapes) == 1:
@@ -124,7 +124,7 @@ SIZES = {"box": ("size",), "cylinder": ("radius", "length"), "sphere": ("radius"
 """The attributes of solids."""
 
 
-def _primitive(shape: UrdfShape) -> Solid | None:
+def primitive(shape: UrdfShape) -> Solid | None:
     """The solid; None where its numbers are none, or its tag is unknown."""
     try:
         names = SIZES[shape.tag]

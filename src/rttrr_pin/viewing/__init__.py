@@ -1,1 +1,13 @@
 """A robot in the browser: frames, bodies, forces, along a trajectory."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from rttrr_pin.lazy import lazy
+
+if TYPE_CHECKING:
+    from rttrr_pin.viewing.view import state_of as state_of
+    from rttrr_pin.viewing.view import view as view
+
+__getattr__, __dir__, __all__ = lazy(__name__, {"view": ("state_of", "view")})
