@@ -74,7 +74,7 @@ def test_files_are_written_beside_the_table(tmp_path: Path, capsys: pytest.Captu
         assert "tau1.1" in (folder / name).read_text()
 
 
-@pytest.mark.parametrize(("option", "begins"), [("--latex", "\\documentclass"), ("--html", "<!DOCTYPE html>"), ("--markdown", "# Errata")])  # fmt: skip
+@pytest.mark.parametrize(("option", "begins"), [("--latex", "\\documentclass"), ("--html", "<!doctype html>"), ("--markdown", "# Errata")])  # fmt: skip
 def test_a_sheet_on_stdout_is_all_there_is(option: str, begins: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["audit", str(TWO_LINK), option, "-"]) == 1
     out, err = capsys.readouterr()

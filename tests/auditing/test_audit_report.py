@@ -14,12 +14,14 @@ from rich.console import Console
 from rttrr_pin.auditing import AuditResult, ComponentAudit, Finding, Kind, Publication, Verdict, read_publication
 from rttrr_pin.auditing.errata import WRITERS, errata, left_side, prose
 from rttrr_pin.auditing.evidence import Evidence
+from rttrr_pin.auditing.page import audit_page
 from rttrr_pin.auditing.report import show_audit, show_equations
 from rttrr_pin.auditing.wording import dimension_summary, evidence_words, verdict_words
 from rttrr_pin.derivation.writers.document import Code, Formula
 from rttrr_pin.derivation.writers.html import mathml
 from rttrr_pin.derivation.writers.typeset import settable
 from rttrr_pin.reporting.files import as_json
+from rttrr_pin.reporting.html import html
 from support.pdflatex import compiled
 
 TWO_LINK = Path(__file__).parents[2] / "examples/audit_two_link.toml"
@@ -164,9 +166,13 @@ def test_json_says_the_whole_of_it(of_the_paper: AuditResult) -> None:
 # Errata sheets
 
 
-@pytest.mark.parametrize("form", WRITERS)
+def sheet(result: AuditResult, form: str) -> str:
+    return html(audit_page(result)) if form == "html" else errata(result, form)
+
+
+@pytest.mark.parametrize("form", [*WRITERS, "html"])
 def test_every_finding_is_on_the_sheet_and_every_change_is_marked(of_the_paper: AuditResult, form: str) -> None:
-    text = errata(of_the_paper, form)
+    text = sheet(of_the_paper, form)
     for found in of_the_paper.findings:
         assert found.id in text
     changed = sum(is_changed for one in of_the_paper.components if one.findings for _, is_changed in one.corrected)
@@ -176,12 +182,12 @@ def test_every_finding_is_on_the_sheet_and_every_change_is_marked(of_the_paper: 
         assert one.quantity in text
 
 
-@pytest.mark.parametrize("form", WRITERS)
+@pytest.mark.parametrize("form", [*WRITERS, "html"])
 def test_nothing_in_a_publication_is_markup(textbook: Publication, form: str) -> None:
     publication = replace(textbook, title=NASTY, source=NASTY)
     made = component(finding(printed=NASTY, derived=NASTY, note=NASTY), notes=(NASTY,), corrected=((NASTY, True),))
     unread = replace(component(), quantity="tau2", verdict=Verdict.UNPARSED, unparsed=NASTY, evidence=None)
-    text = errata(of(publication, made, unread), form)
+    text = sheet(of(publication, made, unread), form)
     if form == "html":
         assert "<script" not in text and text.count("&lt;script&gt;") >= 6
         assert_nested(text)
@@ -227,7 +233,8 @@ class Nesting(HTMLParser):
 
     def handle_starttag(self, tag, attributes) -> None:
         self.tags.add(tag)
-        assert not {name for name, _ in attributes} & {"src", "href", "onclick", "srcset"}
+        assert not {name for name, _ in attributes} & {"src", "onclick", "srcset"}
+        assert all(value.startswith("#") for name, value in attributes if name == "href")
         if tag not in self.VOID:
             self.open.append(tag)
 
@@ -247,7 +254,7 @@ def assert_nested(text: str) -> Nesting:
 
 
 def test_the_page_stands_by_itself(of_the_paper: AuditResult) -> None:
-    text = errata(of_the_paper, "html")
+    text = html(audit_page(of_the_paper))
     tags = assert_nested(text).tags
     assert "math" in tags and not tags & {"script", "link", "img", "iframe"}
     assert set(re.findall(r"https?://[^\"' )]+", text)) == {"http://www.w3.org/1998/Math/MathML"}
@@ -282,7 +289,7 @@ def test_an_equation_in_python_is_shown_as_code(textbook: Publication) -> None:
     )
     result = of(replace(textbook, language="python"), made)
     assert "```python\ntau1 = (\n    m_1*l_1\n    + m_2*l_2  # changed\n)\n```" in errata(result, "markdown")
-    assert "<code>- m_2*l_2</code>" in errata(result, "html")
+    assert "<code>- m_2*l_2</code>" in html(audit_page(result))
     assert r"\begin{verbatim}" in errata(result, "latex")
 
 

@@ -15,7 +15,7 @@ from rttrr_pin.auditing import audit as run_audit
 from rttrr_pin.auditing.errata import errata
 from rttrr_pin.auditing.report import show_audit, show_equations
 from rttrr_pin.errors import InputError
-from rttrr_pin.reporting.options import check_targets, quiet, reading, reading_of, target, xacro
+from rttrr_pin.reporting.options import check_targets, page, quiet, reading, reading_of, target, xacro
 from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json, write_text
 
 
@@ -34,7 +34,7 @@ from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progre
 @reading
 @target("--json", "the outcome as JSON")
 @target("--latex", "an errata sheet as LaTeX")
-@target("--html", "an errata sheet as one HTML page")
+@page
 @target("--markdown", "an errata sheet as Markdown")
 @quiet
 def audit(
@@ -44,6 +44,7 @@ def audit(
     json: str | None,
     latex: str | None,
     html: str | None,
+    figures: str | None,
     markdown: str | None,
     quiet: bool,
     **how: Any,
@@ -52,8 +53,8 @@ def audit(
 
     Exit code: 0 all right, 1 findings or unreadable equations, 2 unusable input, such as undeclared symbols alone.
     """
-    sheets = {"latex": latex, "html": html, "markdown": markdown}
-    targets = {"--json": json} | {f"--{form}": where for form, where in sheets.items()}
+    sheets = {"latex": latex, "markdown": markdown}
+    targets = {"--json": json, "--latex": latex, "--html": html, "--markdown": markdown}
     check_targets(targets, [] if file is None else [file])
     publication = read_publication() if file is None else read_publication(file, **reading_of(**how))
     check_targets(targets)  # nor what the file names
@@ -65,6 +66,11 @@ def audit(
     write_json(json, result.to_dict)
     for form, text in texts.items():  # all are ready before the first is written
         write_text(sheets[form], partial(str, text))
+    if html is not None or figures is not None:
+        from rttrr_pin.auditing.page import audit_page
+        from rttrr_pin.reporting.html import write_page
+
+        write_page(lambda: audit_page(result), html, figures)
     console = Output(quiet=quiet or "-" in targets.values(), soft_wrap=False, highlight=False)
     if equation:
         show_equations(result, console)

@@ -16,7 +16,6 @@ from rttrr_pin.auditing.wording import (
     verdict_words,
 )
 from rttrr_pin.derivation.writers import document as doc
-from rttrr_pin.derivation.writers.html import html
 from rttrr_pin.derivation.writers.latex import latex
 from rttrr_pin.derivation.writers.markdown import markdown
 from rttrr_pin.derivation.writers.typeset import settable
@@ -25,7 +24,6 @@ from rttrr_pin.reporting.results import counted
 WRITERS: Mapping[str, Callable[[doc.Document], str]] = {
     "markdown": partial(markdown, formula="$`{}`$"),  # printed terms have stars and underscores in any place
     "latex": latex,
-    "html": html,
 }
 """By format."""
 
@@ -41,9 +39,14 @@ def errata(result: AuditResult, form: str) -> str:
 
     Args:
         result: the audit.
-        form: "markdown", "latex" or "html".
+        form: "markdown" or "latex"; `page.audit_page` is the same as a page.
     """
-    return WRITERS[form](doc.Document(f"Errata: {result.publication.title}", tuple(_blocks(result))))
+    return WRITERS[form](errata_document(result))
+
+
+def errata_document(result: AuditResult) -> doc.Document:
+    """The errata sheet, in whatever form."""
+    return doc.Document(f"Errata: {result.publication.title}", tuple(_blocks(result)))
 
 
 def _blocks(result: AuditResult) -> Iterator[doc.Block]:

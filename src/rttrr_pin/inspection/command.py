@@ -20,6 +20,7 @@ from rttrr_pin.reporting.options import (
     outcome,
     package,
     packages_of,
+    page,
     robot,
     target,
     xacro,
@@ -53,6 +54,7 @@ from rttrr_pin.urdf.sources import Reading, Source, find
 @target("--sarif", "the findings as SARIF 2.1.0, for code hosts,")
 @target("--junit", "each check as a test in JUnit's XML, for CI servers,")
 @outcome
+@page
 @flag("--full", help="Show every link and every finding.")
 def inspect(
     robot: str,
@@ -67,6 +69,8 @@ def inspect(
     sarif: str | None,
     junit: str | None,
     json: str | None,
+    html: str | None,
+    figures: str | None,
     quiet: bool,
     full: bool,
 ) -> int:
@@ -76,7 +80,7 @@ def inspect(
     input.
     """
     (robot, robots), demands = one_or_several(robot), Demands(strict, fail_on)
-    reports = {"--json": json, "--sarif": sarif, "--junit": junit}
+    reports = {"--json": json, "--sarif": sarif, "--junit": junit, "--html": html}
     check_targets(reports, robots.values() or [robot])
     check_targets(reports | {"--fix": fix})
     chosen(select, ignore)  # that there are such checks, before the first of many files is read
@@ -89,8 +93,10 @@ def inspect(
         return inspect_document(document, select=select, ignore=ignore)
 
     if robots:
-        if fix is not None or full:
-            raise InputError("--fix and --full go with one robot, and several are named: name one, or leave them out")
+        if fix is not None or full or figures is not None:
+            raise InputError(
+                "--fix, --full and --figures go with one robot, and several are named: name one, or leave them out"
+            )
         entries = []
         with progress(len(robots), quiet, "robots") as advance:
             for entry in inspect_each(robots, look):
@@ -117,6 +123,13 @@ def inspect(
         if repaired is not None:
             console.print(Text(repair_summary(repaired, str(fix))))
         entries = [Entry(result.robot, Path(robot), result)]
+    if html is not None or figures is not None:
+        from rttrr_pin.inspection.page import inspection_page, many_page
+        from rttrr_pin.reporting.html import write_page
+
+        write_page(
+            lambda: many_page(entries, demands) if robots else inspection_page(result, demands, robot), html, figures
+        )
     write_json(sarif, lambda: many.sarif(entries, demands))
     write_text(junit, lambda: many.junit(entries, demands))
     verdicts = {entry.verdict(demands) for entry in entries}

@@ -99,8 +99,8 @@ def _link_data(link: LinkRow) -> dict[str, Any]:
 
 def _tree(links: Sequence[LinkRow], width: int) -> Iterator[str]:
     """The table of links; the only link on another stands below it, of several each is marked and indented."""
-    labels = list(_labels(links))
-    return columns(HEADS, [(label, *_cells(link)) for label, link in zip(labels, links, strict=True)], width)
+    labels = list(link_labels(links))
+    return columns(HEADS, [(label, *link_cells(link)) for label, link in zip(labels, links, strict=True)], width)
 
 
 def columns(heads: tuple[str, ...], rows: Sequence[tuple[str, ...]], width: int) -> Iterator[str]:
@@ -113,7 +113,7 @@ def columns(heads: tuple[str, ...], rows: Sequence[tuple[str, ...]], width: int)
         yield "  ".join(cell.ljust(size) for cell, size in zip(row[:fitting], widths, strict=False)).rstrip()
 
 
-def _labels(links: Sequence[LinkRow]) -> Iterator[str]:
+def link_labels(links: Sequence[LinkRow]) -> Iterator[str]:
     """Names, indented by the branchings before them: a chain of any length needs no room."""
     path, parents, levels = list[int](), list[int](), list[int]()
     for k, link in enumerate(links):
@@ -127,7 +127,8 @@ def _labels(links: Sequence[LinkRow]) -> Iterator[str]:
         yield "  " * (levels[-1] - several) + "- " * several + link.name
 
 
-def _cells(link: LinkRow) -> tuple[str, ...]:
+def link_cells(link: LinkRow) -> tuple[str, ...]:
+    """The cells of a row of the table behind the link's name."""
     joint = f"{link.joint} ({link.joint_type})" if link.joint else "root"
     massless = not link.mass and not link.moments.any()
     body = ("", "") if massless else (_triple(link.com), _triple(link.moments))

@@ -47,6 +47,7 @@ class Inspection:
         findings: what is wrong or looks wrong, in the order of the file.
         verdicts: what each parser does with the file.
         text: the file's text.
+        document: the file as it was read.
     """
 
     robot: str
@@ -56,6 +57,7 @@ class Inspection:
     findings: tuple[Finding, ...]
     verdicts: tuple[Verdict, ...]
     text: str = field(default="", repr=False)
+    document: UrdfDocument | None = field(default=None, repr=False)
 
     @cached_property
     def counts(self) -> dict[Severity, int]:
@@ -155,6 +157,7 @@ def inspect_document(
             findings=tuple(sorted(findings, key=lambda finding: (finding.line, finding.id))),
             verdicts=verdicts(document),
             text=document.file_text,
+            document=document,
         )
 
 

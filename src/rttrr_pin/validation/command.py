@@ -5,18 +5,21 @@ from __future__ import annotations
 import time
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 from rich.text import Text
 
 from rttrr_pin.errors import InputError
-from rttrr_pin.reporting.options import flag, outcome, robot, seed
+from rttrr_pin.reporting.options import flag, outcome, page, robot, seed
 from rttrr_pin.reporting.output import AGREE, DISAGREE, UNUSABLE, Output, progress, write_json
 from rttrr_pin.reporting.results import counted, finite
 from rttrr_pin.robot import Robot
 from rttrr_pin.urdf.catalogue import one_or_several
 from rttrr_pin.validation.options import RunOptions, conditions, drawn, payload, programs
+
+if TYPE_CHECKING:
+    from rttrr_pin.validation.run import Validation
 
 STATES = 10_000
 """Compared unless another number is asked for."""
@@ -28,8 +31,11 @@ STATES = 10_000
 @click.option("--states", default=STATES, help="How many states to compare; of a table all of its own.")
 @drawn
 @outcome
+@page
 @flag("--full", help="Show a row for each joint and link.")
-def validate(states: int, json: str | None, quiet: bool, full: bool, **run: Any) -> int:
+def validate(
+    states: int, json: str | None, html: str | None, figures: str | None, quiet: bool, full: bool, **run: Any
+) -> int:
     """Judge one program by another on random states: tau, F, N, f, n at every joint and link.
 
     Several robots each go through a fixed and a floating base, and those that cannot be compared are listed with what
@@ -43,20 +49,22 @@ def validate(states: int, json: str | None, quiet: bool, full: bool, **run: Any)
     run["robot"], robots = one_or_several(run["robot"])
     options = RunOptions(**run)
     if robots:
-        options.check_target(json, robots.values())
-        return _validate_several(robots, options, states, json, quiet, full)
-    loaded = options.load(json)
+        options.check_targets({"--json": json, "--html": html}, robots.values())
+        return _validate_several(robots, options, states, json, html, figures, quiet, full)
+    loaded = options.load(json, others={"--html": html})
     with progress(states, quiet) as advance:
         result = comparing.validate(
             loaded, n_states=states, sampling=options.sampling, progress=advance, **options.chosen()
         )
     result = replace(result, notes=(*result.notes, *_faults(loaded, options)))
     write_json(json, result.to_dict)
-    console = Output(quiet=quiet or json == "-", soft_wrap=False)
+    why = None if result.passed else options.diagnosis(_failed(result))
+    if html is not None or figures is not None:
+        _write_page(loaded, result, options, why, html, figures)
+    console = Output(quiet=quiet or "-" in (json, html), soft_wrap=False)
     show_validation(result, console, f"{options.command('state')} --index", full)
-    if not result.passed:
-        failed = next(k for k, one in enumerate(result.references) if not one.passed)
-        console.print(Text(f"why: {options.diagnosis(failed)}"), soft_wrap=True)
+    if why is not None:
+        console.print(Text(f"why: {why}"), soft_wrap=True)
     return AGREE if result.passed else DISAGREE
 
 
@@ -112,6 +120,25 @@ def search(evaluations: int, json: str | None, quiet: bool, **run: Any) -> int:
     return AGREE if worst.passed else DISAGREE
 
 
+def _failed(result: Validation) -> int:
+    """The number of the first reference that the subject differs from."""
+    return next(k for k, one in enumerate(result.references) if not one.passed)
+
+
+def _write_page(
+    robot: Robot, result: Validation, options: RunOptions, why: str | None, html: str | None, figures: str | None
+) -> None:
+    """The page, with the worst state in full."""
+    from rttrr_pin.reporting.html import write_page
+    from rttrr_pin.validation.page import validation_page
+    from rttrr_pin.validation.state import compare_state
+
+    index = result.worst.of_tolerance.state
+    worst = compare_state(robot, index, sampling=options.sampling, **options.chosen())
+    commands = (f"{options.command('state')} --index {index}", *([] if why is None else [why]))
+    write_page(lambda: validation_page(result, robot, worst, commands), html, figures)
+
+
 def _faults(robot: Robot, options: RunOptions) -> list[str]:
     """That both programs compute what the file says does not mean that the file says what a body can be."""
     from rttrr_pin.inspection.telling import count_errors
@@ -122,7 +149,14 @@ def _faults(robot: Robot, options: RunOptions) -> list[str]:
 
 
 def _validate_several(
-    sources: dict[str, Path], options: RunOptions, states: int, json: str | None, quiet: bool, full: bool
+    sources: dict[str, Path],
+    options: RunOptions,
+    states: int,
+    json: str | None,
+    html: str | None,
+    figures: str | None,
+    quiet: bool,
+    full: bool,
 ) -> int:
     """One table for many robots."""
     from rttrr_pin.validation.many import BASES, Task, many_data, validate_many
@@ -131,7 +165,11 @@ def _validate_several(
     own = ("--subject", "--reference", "--seed", "--sampling")
     allowed = (*own, "--xacro", "--xacro-arg", "--lenient", "--no-mimic", "--package")
     refused = [word for word in options.unusual() if word.startswith("--") and word not in allowed]
-    refused += ["--full"] * full + ["--reference more than once"] * (len(options.reference) > 1)
+    refused += (
+        ["--full"] * full
+        + ["--figures"] * (figures is not None)
+        + ["--reference more than once"] * (len(options.reference) > 1)
+    )
     if refused:
         raise InputError(f"{', '.join(refused)} goes with one robot, and several are named: name one, or leave it out")
     task = Task(states, options.seed, options.sampling, options.subject, options.reference[0], **options.reading())
@@ -140,6 +178,11 @@ def _validate_several(
         entries = validate_many(sources, task, progress=advance)
     seconds = time.perf_counter() - start
     write_json(json, lambda: many_data(entries, task, seconds))
-    show_many(entries, task, seconds, Output(quiet=quiet or json == "-"))
+    if html is not None:
+        from rttrr_pin.reporting.html import write_page
+        from rttrr_pin.validation.page_many import many_page
+
+        write_page(lambda: many_page(entries, task, seconds), html)
+    show_many(entries, task, seconds, Output(quiet=quiet or "-" in (json, html)))
     verdicts = {entry.verdict for entry in entries}
     return DISAGREE if "disagree" in verdicts else UNUSABLE if "unusable" in verdicts else AGREE

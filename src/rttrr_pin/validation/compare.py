@@ -24,6 +24,7 @@ from rttrr_pin.core.scalars import EPS
 from rttrr_pin.core.wrench import LINK_QUANTITIES, QUANTITIES
 from rttrr_pin.implementations import Batch, Evaluation, default_allowance
 from rttrr_pin.implementations.allowance import carriers
+from rttrr_pin.validation.histogram import Histogram
 from rttrr_pin.validation.ranking import Worst
 
 SLACK = 1e-9
@@ -117,6 +118,7 @@ class Comparison:
         quantities: those that both programs give.
         rows: of each quantity at each link or joint.
         whole: by quantity, the largest relative error in eps, in the norm over all links or joints; as `Row.relative`.
+        histograms: by quantity, how many states have how large an error / tolerance, the largest over all places.
         zero: the quantities that are zero everywhere, in every state so far, by both programs.
         seen: the others.
     """
@@ -127,6 +129,7 @@ class Comparison:
         self.quantities = tuple(key for key in QUANTITIES if key in quantities)
         self.rows = tuple(Row(*own) for own in labels(model) if own[0] in self.quantities)
         self.whole = {quantity: Worst() for quantity in self.quantities}
+        self.histograms = {quantity: Histogram() for quantity in self.quantities}
         self._carriers = carriers(model)
         self.zero = {row.quantity for row in self.rows}
         self.seen = set[str]()
@@ -151,8 +154,9 @@ class Comparison:
             quantities.setdefault(row.quantity, {})[row.at] = asdict(row) | {"passed": row.passed}
         worst = {key: getattr(self.worst, key) for key in ("quantity", "at")} | asdict(self.worst.of_tolerance)
         normwise = {quantity: asdict(largest) for quantity, largest in self.whole.items()}
+        histograms = {quantity: own.to_dict() for quantity, own in self.histograms.items()}
         names = {"reference": f"{self.name} {self.version}".rstrip(), "passed": self.passed}
-        return {**names, "worst": worst, "normwise_eps": normwise, "quantities": quantities}
+        return {**names, "worst": worst, "normwise_eps": normwise, "histograms": histograms, "quantities": quantities}
 
     def add(self, batch: Batch, subject: Evaluation, reference: Evaluation) -> Array:
         """Take in the results of consecutive states; return the largest error / tolerance of each state, (N,)."""
@@ -160,7 +164,10 @@ class Comparison:
         of_tolerance = difference.of_tolerance
         _see([row.absolute for row in self.rows], difference.error, batch.first)
         _see([row.of_tolerance for row in self.rows], of_tolerance, batch.first)
-        ratios: Array = of_tolerance.max(axis=0)
+        largest = [of_tolerance[places].max(axis=0, initial=0.0) for places in self._places.values()]
+        for histogram, values in zip(self.histograms.values(), largest, strict=True):
+            histogram.see(values)
+        ratios: Array = np.max(largest, axis=0)
         if ratios.max() > 1.0:
             for row, failures in zip(self.rows, np.count_nonzero(of_tolerance > 1.0, axis=1).tolist(), strict=True):
                 row.failures += failures

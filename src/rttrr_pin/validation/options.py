@@ -122,9 +122,10 @@ class RunOptions:
 
     def check_target(self, target: str | None, files: Iterable[Path] = (), option: str = "--json") -> None:
         """The result can be written, and overwrites nothing that is read, nor a program."""
-        self._check_targets({option: target}, files)
+        self.check_targets({option: target}, files)
 
-    def _check_targets(self, targets: Mapping[str, str | None], files: Iterable[Path] = ()) -> None:
+    def check_targets(self, targets: Mapping[str, str | None], files: Iterable[Path] = ()) -> None:
+        """The same of several, by their options; none is another."""
         programs = (name for program in (self.subject, *self.reference) for name in files_of(program))
         check_targets(targets, [self.robot, *programs, *files])
 
@@ -137,9 +138,9 @@ class RunOptions:
             others: where others are written, by their options.
         """
         targets = {option: target, **(others or {})}
-        self._check_targets(targets)
+        self.check_targets(targets)
         robot = self._load()
-        self._check_targets(targets)
+        self.check_targets(targets)
         return robot
 
     def _load(self) -> Robot:

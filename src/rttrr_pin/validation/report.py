@@ -40,7 +40,7 @@ def show_validation(result: Validation, console: Console, rerun: str = "", full:
         full: whether to show a row for each joint and link.
     """
     states = drawn(result.n_states, result.sampling, result.seed)
-    header = f"{result.subject} against {result.reference}: {states}, payload {result.payload}{_unusual(result)}"
+    header = f"{result.subject} against {result.reference}: {states}, payload {result.payload}{unusual(result)}"
     console.print(Text(f"{result.robot}:", "bold"), Text(header))
     places = _places(result)
     console.print(_table(result, places if full else _worst_of_each_quantity(places)))
@@ -139,7 +139,7 @@ def word(passed: bool) -> Text:
     return Text("PASS", "bold green") if passed else Text("FAIL", "bold red")
 
 
-def _unusual(result: Validation) -> str:
+def unusual(result: Validation) -> str:
     """What is not as by default: base, gravity, joint friction and armature."""
     parts = ["floating base"] if result.base == "floating" else []
     if result.gravity != STANDARD_GRAVITY:

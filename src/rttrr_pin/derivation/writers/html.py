@@ -2,20 +2,30 @@
 
 from __future__ import annotations
 
-from typing import Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
 from xml.etree import ElementTree
 
-from rttrr_pin.derivation.writers.document import Document, pieces
+from rttrr_pin.derivation.writers.document import Block, Document, pieces
 from rttrr_pin.derivation.writers.templates import rendered
 from rttrr_pin.derivation.writers.typeset import settable
+
+if TYPE_CHECKING:
+    from markupsafe import Markup
 
 MATHML = "{http://www.w3.org/1998/Math/MathML}"
 
 
 def html(document: Document) -> str:
     """A document as HTML."""
-    filters = {"mathml": mathml, "pieces": pieces, "kind": lambda part: type(part).__name__}
-    return rendered("document.html", filters, document=document)
+    return rendered("document.html", FILTERS, document=document)
+
+
+def part(blocks: Sequence[Block]) -> Markup:
+    """Some blocks as a part of a page."""
+    from markupsafe import Markup
+
+    return Markup(rendered("part.html", FILTERS, blocks=blocks))
 
 
 def mathml(tex: str) -> Any:
@@ -28,3 +38,7 @@ def mathml(tex: str) -> Any:
         if all(element.tag.startswith(MATHML) for element in ElementTree.fromstring(text).iter()):
             return Markup(text)
     return Markup("<code>{}</code>").format(tex)
+
+
+FILTERS = {"mathml": mathml, "pieces": pieces, "kind": lambda part: type(part).__name__}
+"""What the templates apply to values."""

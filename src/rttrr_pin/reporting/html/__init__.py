@@ -27,11 +27,13 @@ from rttrr_pin.reporting.html.page import (
     points,
 )
 from rttrr_pin.reporting.html.robot import drawing, robot_drawing
+from rttrr_pin.reporting.html.skeleton import Bone
 from rttrr_pin.reporting.output import write_text
 
 __all__ = [
     "Bars",
     "Block",
+    "Bone",
     "Causes",
     "Chart",
     "Code",

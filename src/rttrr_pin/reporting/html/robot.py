@@ -87,7 +87,7 @@ def drawing(bones: Sequence[Bone], marked: Collection[str], forces: Array | None
     points = np.array([bone.p for bone in bones])
     arrows = _arrows(bones, forces, size)
     axes = 0.075 * size if len(bones) <= CROWDED else 0.045 * size
-    paper = _Paper.around(camera(bones), np.vstack([points, *map(np.stack, arrows.values())]))
+    paper = _Paper.around(camera(bones), np.vstack([points, *_bodies(bones, size), *map(np.stack, arrows.values())]))
     parts: list[Markup] = [_line(paper(a), paper(b), "floor") for a, b in _floor(size, points)]
     depth = np.argsort(points @ np.cross(paper.view.across, paper.view.up), kind="stable").tolist()
     parts += [_bone(paper, bones, k, bones[k].name in marked) for k in depth]
@@ -104,6 +104,15 @@ def drawing(bones: Sequence[Bone], marked: Collection[str], forces: Array | None
         _legend(bones, bool(arrows)),
         note=f"grid {label(_grid(size))} m",
     )
+
+
+def _bodies(bones: Sequence[Bone], size: float) -> Iterator[Array]:
+    """Centres of mass that are not far off, and some room around a robot whose links are all at one place."""
+    for bone in bones:
+        if bone.com is not None and float(np.linalg.norm(bone.com - bone.p)) <= size:
+            yield bone.com
+    for side in (-0.2, 0.2):
+        yield bones[0].p + side * size
 
 
 def _nothing() -> Markup:

@@ -9,6 +9,7 @@ import numpy as np
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.joint import Joint
+from rttrr_pin.core.joints.base import JointType
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.placements import in_base
 
@@ -71,17 +72,25 @@ def skeleton(model: Model, q: Array) -> tuple[Bone, ...]:
 
 def kind_of(joint: Joint) -> str:
     """What a joint looks like."""
-    rotations = joint.type.rotations
+    return kind_of_type(joint.type)
+
+
+def kind_of_type(kind: JointType) -> str:
+    """The same of its type."""
+    rotations = kind.rotations
     if not rotations:
         return "rigid"
     return "free" if len(rotations) > 1 else "turn" if rotations[0] else "slide"
 
 
 def size_of(bones: Sequence[Bone]) -> float:
-    """The longest side of the box around all origins [m]; 1 where all are at one place."""
+    """The longest side of the box around all origins [m]; around the centres of mass where all are at one place."""
     points = np.array([bone.p for bone in bones])
     size = float(np.ptp(points, axis=0).max())
-    return size if np.isfinite(size) and size > 0.0 else 1.0
+    if size > 0.0:
+        return size
+    arms = [2.0 * float(np.linalg.norm(bone.com - bone.p)) for bone in bones if bone.com is not None]
+    return max((arm for arm in arms if 0.0 < arm < np.inf), default=1.0)
 
 
 @dataclass(frozen=True, slots=True)

@@ -14,6 +14,7 @@ COLOURS: Mapping[str, tuple[str, str]] = {
     "good": ("#17713b", "#63cf93"),
     "warn": ("#8a5b00", "#e3b657"),
     "bad": ("#b3261e", "#f4897f"),
+    "mark": ("#ffe58a", "#5f4c00"),
     "s1": ("#2166ac", "#79b4ee"),
     "s2": ("#c2500a", "#f19a5f"),
     "s3": ("#1b7837", "#6fcf8e"),
