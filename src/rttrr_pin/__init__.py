@@ -47,6 +47,8 @@ if TYPE_CHECKING:
     from rttrr_pin.laws import check_laws as check_laws
     from rttrr_pin.loading import load as load
     from rttrr_pin.loading import load_all as load_all
+    from rttrr_pin.loads import LoadReport as LoadReport
+    from rttrr_pin.loads import compute_loads as compute_loads
     from rttrr_pin.robot import Robot as Robot
     from rttrr_pin.validation import compare_state as compare_state
     from rttrr_pin.validation import validate as validate
@@ -76,6 +78,7 @@ __getattr__, __dir__, __all__ = lazy(
         "inspection": ("inspect",),
         "laws": ("check_laws",),
         "loading": ("load", "load_all"),
+        "loads": ("LoadReport", "compute_loads"),
         "robot": ("Robot",),
         "validation": ("compare_state", "validate", "validate_many"),
         "validation.search": ("search_worst_state",),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+from pathlib import Path
 from typing import Any
 
 import click
@@ -70,7 +72,11 @@ def loads(robot: str, trajectory: str, json: str | None, quiet: bool, full: bool
     """
     from rttrr_pin.loads.report import show_loads
     from rttrr_pin.loads.run import compute_loads
+    from rttrr_pin.trajectories.read import READERS
 
+    if Path(robot).suffix.lower() in READERS:
+        right = shlex.join(["rttrr-pin", "loads", trajectory, robot])
+        raise InputError(f"{robot} is a trajectory, and the robot comes first: {right}")
     run = RunOptions(robot=robot, **{name: words[name] for name in ROBOT})
     targets = {"--json": json, **{option: words[name] for name, option in TARGETS.items()}}
     check_targets(targets, [robot, trajectory, *filter(None, [words["ratings"]])])

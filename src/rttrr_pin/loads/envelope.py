@@ -30,7 +30,7 @@ class JointEnvelope:
         self._coordinates = _coordinates(model)
 
     def add(self, rows: Block, weights: Array, values: Values) -> None:
-        """Block more, with their tau."""
+        """Rows more, with their tau."""
         forces, rates = (np.ascontiguousarray(x.T) for x in (values["tau"], rows.v))
         sizes, speeds = np.abs(forces), np.abs(rates)
         self._means.add(sizes, weights, speeds)
@@ -102,7 +102,7 @@ class BearingEnvelope:
         self._means = {name: Means(len(model.links)) for name in PARTS}
 
     def add(self, rows: Block, weights: Array, values: Values) -> None:
-        """Block more, with the parts of what crosses their joints."""
+        """Rows more, with the parts of what crosses their joints."""
         for name in PARTS:
             own = np.ascontiguousarray(values[name].T)
             sizes = np.abs(own)

@@ -42,7 +42,7 @@ class Gathered:
         self.rows, self.start, self.seconds = 0, 0.0, 0.0
 
     def add(self, rows: Block, weights: Array, values: Values, half_widths: Values | None) -> None:
-        """Block more, with their loads and half the widths of their bands."""
+        """Rows more, with their loads and half the widths of their bands."""
         self.start = self.start if self.rows else float(rows.time[0])
         self.seconds = float(rows.time[-1]) - self.start
         self.rows += len(rows)

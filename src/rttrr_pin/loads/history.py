@@ -23,10 +23,11 @@ class Buckets:
 
     def __init__(self) -> None:
         self._size, self._rows = 1, 0
-        self._low, self._high, self._time = (np.zeros((0, 0)),) * 3  # by number, and bucket; first and last time
+        self._kept: tuple[Array, Array, Array] | None = None
+        """Lowest and highest of each number in each bucket, (n, B); first and last time, (2, B)."""
 
     def add(self, rows: Block, tau: Array, half_width: Array | None) -> None:
-        """Block more.
+        """Rows more.
 
         Args:
             rows: theirs is the time.
@@ -43,38 +44,46 @@ class Buckets:
         low = np.minimum.reduceat(np.concatenate(lows), starts, axis=1)
         high = np.maximum.reduceat(np.concatenate(highs), starts, axis=1)
         time = np.array([rows.time[starts], rows.time[np.append(starts[1:], len(rows)) - 1]])
-        if inside:
-            low[:, 0] = np.minimum(low[:, 0], self._low[:, -1])
-            high[:, 0] = np.maximum(high[:, 0], self._high[:, -1])
-            time[0, 0] = self._time[0, -1]
-        self._low, self._high, self._time = (
-            np.concatenate([old[:, : old.shape[1] - bool(inside)].reshape(len(new), -1), new], axis=1)
-            for old, new in ((self._low, low), (self._high, high), (self._time, time))
-        )
+        if self._kept is not None:
+            before = self._kept
+            if inside:
+                low[:, 0] = np.minimum(low[:, 0], before[0][:, -1])
+                high[:, 0] = np.maximum(high[:, 0], before[1][:, -1])
+                time[0, 0] = before[2][0, -1]
+            kept = slice(None, -1 if inside else None)
+            pairs = zip(before, (low, high, time), strict=True)
+            low, high, time = (np.concatenate([x[:, kept], y], axis=1) for x, y in pairs)
         self._rows += len(rows)
-        while self._time.shape[1] > MOST_BUCKETS:
-            self._merge()
-
-    def _merge(self) -> None:
-        pairs = np.arange(0, self._time.shape[1], 2)
-        self._low = np.minimum.reduceat(self._low, pairs, axis=1)
-        self._high = np.maximum.reduceat(self._high, pairs, axis=1)
-        last = np.minimum(pairs + 1, self._time.shape[1] - 1)
-        self._time = np.array([self._time[0, pairs], self._time[1, last]])
-        self._size *= 2
+        while time.shape[1] > MOST_BUCKETS:
+            low, high, time = _merged(low, high, time)
+            self._size *= 2
+        self._kept = low, high, time
 
     def history(self, nv: int) -> History:
         """What there is so far."""
-        banded = len(self._low) > nv
-        low, high = self._low.T, self._high.T
+        assert self._kept is not None
+        low, high, (first, last) = self._kept[0].T, self._kept[1].T, self._kept[2]
+        banded = low.shape[1] > nv
         return History(
-            time=self._time[0] + (self._time[1] - self._time[0]) / 2,
+            time=first + (last - first) / 2,
             low=low[:, :nv].copy(),
             high=high[:, :nv].copy(),
             band_low=low[:, nv:].copy() if banded else None,
             band_high=high[:, nv:].copy() if banded else None,
             rows=self._size,
         )
+
+
+def _merged(low: Array, high: Array, time: Array) -> tuple[Array, Array, Array]:
+    """Buckets in pairs; the last may stay alone."""
+    count = time.shape[1]
+    pairs = np.arange(0, count, 2)
+    last = np.minimum(pairs + 1, count - 1)
+    return (
+        np.minimum.reduceat(low, pairs, axis=1),
+        np.maximum.reduceat(high, pairs, axis=1),
+        np.array([time[0, pairs], time[1, last]]),
+    )
 
 
 class Sampling:
@@ -85,7 +94,7 @@ class Sampling:
         self._parts: list[tuple[NDArray[Any], ...]] = []
 
     def add(self, rows: Block, tau: Array) -> None:
-        """Block more, with tau (N, nv)."""
+        """Rows more, with tau (N, nv)."""
         every = slice(-rows.start % self._step, None, self._step)
         part = tuple(x[every].copy() for x in (rows.rows, rows.time, rows.q, rows.v, tau))
         self._parts.append(part)

@@ -108,7 +108,7 @@ class Outputs:
         self._stack.__exit__(kind, error, trace)
 
     def write(self, rows: Block, values: Values, half_widths: Values | None) -> None:
-        """Block more, with what was computed of them."""
+        """Rows more, with what was computed of them."""
         if self._table is not None:
             arrays = {"time": rows.time, **values}
             for own in self._fields:
