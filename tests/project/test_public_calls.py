@@ -16,6 +16,7 @@ import rttrr_pin
 from rttrr_pin import Joint, JointEffects, Limits, Link, Mimic, Model, RandomPayload, Robot, RttrrError, Wrench
 from rttrr_pin.core.joints import REVOLUTE
 from rttrr_pin.diagnosis import diagnose, diagnose_log, sample_states
+from rttrr_pin.trajectories import Trajectory, trajectory
 from rttrr_pin.validation import Sampler
 from support.logs import write_log
 
@@ -41,6 +42,10 @@ def the_log() -> Path:
     path = Path(tempfile.mkdtemp()) / "log.csv"
     write_log(path, rttrr_pin.load("rttrr"), rate=200.0, seconds=1.0)
     return path
+
+
+def the_motion() -> Trajectory:
+    return trajectory(rttrr_pin.load("rttrr"), [0.0, 1.0], *np.full((3, 2, 5), 0.1))
 
 
 @cache
@@ -147,6 +152,20 @@ def calls() -> dict[str, Call]:
             {"a": robot, "b": "trtrr", "n_states": 3, "seed": 0},
         ),
         "diagnose_log": (diagnose_log, {"robot": robot, "path": the_log()}),
+        "compute_loads": (
+            rttrr_pin.compute_loads,
+            {
+                "robot": robot,
+                "trajectory": the_motion(),
+                "quantities": ("tau", "f"),
+                "payload": None,
+                "convention": None,
+                "output": None,
+                "wrench_stamped": None,
+                "load_cases": None,
+                "ratings": {"joint_1": {"ratio": 100, "rated_torque": 67, "rated_speed": 2000, "rated_life": 35000}},
+            },
+        ),
         "inspect": (rttrr_pin.inspect, {"robot": robot, "folder": None, "select": "P", "ignore": ()}),
         "derive": (
             rttrr_pin.derive,
@@ -164,7 +183,7 @@ NAMES = (
     *("in_convention", "JointWrenches"),
     *("LinkWrenches", "Wrench", "RandomPayload", "JointEffects", "Joint", "Limits", "Mimic", "Link", "Model"),
     *("validate", "compare_state", "search_worst_state", "check_laws", "inspect", "derive", "read_publication"),
-    "conform",
+    *("conform", "compute_loads"),
     *("audit", "compare_robots", "sample_states", "diagnose", "diagnose_log"),
     *(
         "BaseParameters.of",
@@ -189,6 +208,7 @@ def test_every_public_function_is_called() -> None:
         "Evaluation",
         "Implementation",
         "InputError",
+        "LoadReport",
         "RttrrError",
     }
     assert {*NAMES} == {*calls()}

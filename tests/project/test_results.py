@@ -24,6 +24,7 @@ from rttrr_pin import errors
 from rttrr_pin.conformance import Tolerances, conform, mutate
 from rttrr_pin.diagnosis import diagnose, diagnose_log, sample_states
 from rttrr_pin.implementations import make_implementation
+from rttrr_pin.trajectories import trajectory
 from rttrr_pin.validation import Sampler
 from support.implementations import still
 from support.logs import write_log
@@ -32,7 +33,10 @@ EXAMPLE = Path(__file__).parents[2] / "examples/audit_two_link.toml"
 
 PACKAGES = (
     "rttrr_pin",
-    *(f"rttrr_pin.{name}" for name in ["errors", "implementations", "validation", "laws", "inspection", "diagnosis"]),
+    *(
+        f"rttrr_pin.{name}"
+        for name in ["errors", "implementations", "validation", "laws", "inspection", "diagnosis", "loads"]
+    ),
     "rttrr_pin.conformance",
 )
 PACKAGES = (*PACKAGES, *(f"rttrr_pin.{name}" for name in ["auditing", "derivation", "compile", "exact"]))
@@ -88,6 +92,7 @@ def objects() -> dict[str, Any]:
         "MutationScore of huge errors": mutate(robot, Tolerances(("gravity",), 2), 9, 1e300),
         "LawReport": rttrr_pin.check_laws(robot, n_states=np.int64(2), seed=np.int64(2)),  # type: ignore[arg-type]
         "Inspection": rttrr_pin.inspect(robot),
+        "LoadReport": rttrr_pin.compute_loads(robot, trajectory(robot, [0.0, 1.0], *np.full((3, 2, 5), 0.1))),
         "Comparison": rttrr_pin.compare_robots(robot, "trtrr", np.int64(3), seed=np.int64(2)),  # type: ignore[arg-type]
         "Derivation": rttrr_pin.derive(robot, "g"),
         "Derivation in steps": rttrr_pin.derive(robot, ("g",), form="stepwise", payload_link="tool"),
@@ -117,6 +122,7 @@ NAMES = (
         "WorstCase",
         "LawReport",
         "Inspection",
+        "LoadReport",
         "Derivation",
         "Derivation in steps",
         "Publication",
@@ -158,7 +164,16 @@ def test_objects_can_be_compared_and_shown(name: str) -> None:
 
 
 AS_DATA = (
-    *("Validation", "Validation of nan", "StateReport", "StateReport of nan", "WorstCase", "LawReport", "Inspection"),
+    *(
+        "Validation",
+        "Validation of nan",
+        "StateReport",
+        "StateReport of nan",
+        "WorstCase",
+        "LawReport",
+        "Inspection",
+        "LoadReport",
+    ),
     *("Diagnosis", "Diagnosis of a cause", "LogDiagnosis", "Conformance", "Conformance of nan"),
     *("MutationScore", "MutationScore of huge errors"),
     *("Comparison", "Derivation", "Derivation in steps", "AuditResult", "Enclosures", "BaseParameters"),

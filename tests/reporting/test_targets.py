@@ -27,6 +27,8 @@ WRITING: dict[str, Command] = {
     "compare, a page": lambda robot, out: ["compare", str(robot), "rttrr", "--html", out],
     "diagnose": lambda robot, out: ["diagnose", str(robot), "--subject", "recursion", "--json", out],
     "diagnose, a page": lambda robot, out: ["diagnose", str(robot), "--subject", "recursion", "--html", out],
+    "loads": lambda robot, out: ["loads", str(robot), "run.csv", "-o", out],
+    "loads, cases": lambda robot, out: ["loads", str(robot), "run.csv", "--load-cases", out],
     "inspect": lambda robot, out: ["inspect", str(robot), "--json", out],
     "derive": lambda robot, out: ["derive", str(robot), "--latex", out],
     "audit": lambda robot, out: ["audit", str(robot), "--html", out],

@@ -73,9 +73,11 @@ def read_ratings(path: str | Path, model: Model) -> dict[str, GearRating]:
     """
     where = path_of("ratings", path)
     try:
-        data = tomllib.loads(read_limited(where, LARGEST_FILE).decode())
-    except OSError as error:
-        raise InputError(f"{where} cannot be read: {error.strerror}") from error
+        content = read_limited(where, LARGEST_FILE)
+    except (OSError, ValueError) as error:  # of a name that no file has, too
+        raise InputError(f"{where} cannot be read: {getattr(error, 'strerror', None) or error}") from error
+    try:
+        data = tomllib.loads(content.decode())
     except (UnicodeDecodeError, tomllib.TOMLDecodeError, RecursionError) as error:
         raise InputError(f"{where} is no TOML: {error}; write, for each joint with a gear:\n{EXAMPLE}") from error
     if not data:

@@ -14,7 +14,7 @@ from rttrr_pin.core.conventions import convention as convention_of
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load, Payloads, loads_of
 from rttrr_pin.core.wrench import LINK_QUANTITIES
-from rttrr_pin.errors import InputError
+from rttrr_pin.errors import InputError, UnknownNameError
 from rttrr_pin.loads.bearings import PARTS
 from rttrr_pin.loads.evaluation import Evaluator
 from rttrr_pin.loads.gathering import Gathered
@@ -87,6 +87,8 @@ def compute_loads(
     loads = _loads(model, payload)
     wanted = _wanted(model, trajectory, quantities, convention, (output, wrench_stamped), band)
     cases = None if load_cases is None else path_of("load_cases", load_cases)
+    if cases is not None and cases.suffix.lower() != ".csv":
+        raise UnknownNameError("kind of load_cases", cases.suffix or cases.name, [".csv"])
     run = _Run(robot, trajectory, wanted, loads, bearings, cases)
     run.go(progress, rated)
     return run.report(time.perf_counter() - began)
