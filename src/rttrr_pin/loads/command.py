@@ -11,7 +11,7 @@ import click
 from rttrr_pin.core.payload import RandomPayload
 from rttrr_pin.core.wrench import Wrench
 from rttrr_pin.errors import InputError
-from rttrr_pin.reporting.options import check_targets, flag, group, numbers_of, outcome
+from rttrr_pin.reporting.options import check_targets, flag, group, numbers_of, outcome, page
 from rttrr_pin.reporting.output import AGREE, DISAGREE, Output, progress, write_json
 from rttrr_pin.robot import Robot
 from rttrr_pin.trajectories import Trajectory, named, read_trajectory
@@ -64,8 +64,18 @@ motion = group(
 @motion
 @surroundings
 @outcome
+@page
 @flag("--full", help="Show means, times and states too.")
-def loads(robot: str, trajectory: str, json: str | None, quiet: bool, full: bool, **words: Any) -> int:
+def loads(
+    robot: str,
+    trajectory: str,
+    json: str | None,
+    html: str | None,
+    figures: str | None,
+    quiet: bool,
+    full: bool,
+    **words: Any,
+) -> int:
     """What every joint and bearing carries along a trajectory: peaks, means, margins, lives of gears.
 
     Exit code: 0 within the limits, 1 one is exceeded, 2 unusable input.
@@ -78,7 +88,7 @@ def loads(robot: str, trajectory: str, json: str | None, quiet: bool, full: bool
         right = shlex.join(["rttrr-pin", "loads", trajectory, robot])
         raise InputError(f"{robot} is a trajectory, and the robot comes first: {right}")
     run = RunOptions(robot=robot, **{name: words[name] for name in ROBOT})
-    targets = {"--json": json, **{option: words[name] for name, option in TARGETS.items()}}
+    targets = {"--json": json, "--html": html, **{option: words[name] for name, option in TARGETS.items()}}
     check_targets(targets, [robot, trajectory, *filter(None, [words["ratings"]])])
     loaded = _carrying(run.load(None), words)
     motion = _trajectory(trajectory, loaded, words)
@@ -99,7 +109,12 @@ def loads(robot: str, trajectory: str, json: str | None, quiet: bool, full: bool
             progress=advance,
         )
     write_json(json, report.to_dict)
-    show_loads(report, Output(quiet=quiet or json == "-", soft_wrap=False), full)
+    if html is not None or figures is not None:
+        from rttrr_pin.loads.page import loads_page
+        from rttrr_pin.reporting.html import write_page
+
+        write_page(lambda: loads_page(report, loaded), html, figures)
+    show_loads(report, Output(quiet=quiet or "-" in (json, html), soft_wrap=False), full)
     return AGREE if report.passed else DISAGREE
 
 

@@ -9,6 +9,7 @@ from rttrr_pin.reporting.html.chart import Chart, Key
 from rttrr_pin.reporting.html.columns import bars, histogram
 from rttrr_pin.reporting.html.figures import write_figures
 from rttrr_pin.reporting.html.lines import line_chart, scatter
+from rttrr_pin.reporting.html.markup import slug
 from rttrr_pin.reporting.html.page import (
     Bars,
     Block,
@@ -55,6 +56,7 @@ __all__ = [
     "points",
     "robot_drawing",
     "scatter",
+    "slug",
     "write_figures",
     "write_page",
 ]

@@ -141,7 +141,7 @@ def bars(
         wrong = mark is not None and beyond and value > mark[1]
         bar = element(
             "rect",
-            element("title", f"{row}: {label(value)}"),
+            element("title", f"{row}: {value:.3g}"),
             class_=f"column{' beyond' * wrong}",
             x=x.start,
             y=top + 3,
@@ -151,7 +151,7 @@ def bars(
         parts += (
             bar,
             element("text", cut(row, 20), x=x.start - 8, y=top + 15, class_="label end"),
-            element("text", label(value), x=end + 5, y=top + 15, class_="tick"),
+            element("text", f"{value:.3g}", x=end + 5, y=top + 15, class_="tick"),
         )
     bottom = TOP + len(values) * BAR + 4
     if mark is not None:
@@ -159,5 +159,5 @@ def bars(
         parts.append(element("line", class_="limit", x1=at, x2=at, y1=TOP - 6, y2=bottom))
         parts.append(element("text", mark[0], x=at, y=TOP - 10, class_="tick middle"))
     body = joined((axes(x, Scale(0, 1, bottom, TOP), x_label, "", ()), *parts))
-    text = f"{title}. {'; '.join(f'{row}: {label(value)}' for row, value in values.items())}"
+    text = f"{title}. {'; '.join(f'{row}: {value:.3g}' for row, value in values.items())}"
     return Chart(name, title, text, body, bottom + BOTTOM, note=note)

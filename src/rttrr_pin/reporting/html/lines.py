@@ -27,6 +27,9 @@ Range = tuple[Array, Array]
 
 Series = Array | Range
 
+Limits = Mapping[str, tuple[float, ...]]
+"""By name, the values that are not to be exceeded."""
+
 
 def line_chart(
     name: str,
@@ -36,7 +39,8 @@ def line_chart(
     x_label: str,
     y_label: str,
     band: tuple[str, Range] | None = None,
-    limits: Mapping[str, float] | None = None,
+    limits: Limits | None = None,
+    ends: tuple[float, float] | None = None,
 ) -> Chart:
     """Numbers over time.
 
@@ -49,12 +53,13 @@ def line_chart(
         y_label: likewise.
         band: name, and what the truth is between at each time.
         limits: by name, what is not to be exceeded; drawn where they are not far off.
+        ends: of the axis, where it is longer than the times.
     """
     pairs = {key: value if isinstance(value, tuple) else (value, value) for key, value in series.items()}
     every = [*pairs.values(), *([] if band is None else [band[1]])]
     drawn, far = _near(limits or {}, every)
-    across = Scale(*_wide(*span([x])), LEFT, WIDTH - RIGHT)
-    up = linear([*(side for pair in every for side in pair), list(drawn.values())], HEIGHT - BOTTOM, TOP)
+    across = Scale(*_wide(*span([x, ends or ()])), LEFT, WIDTH - RIGHT)
+    up = linear([*(side for pair in every for side in pair), _values(drawn)], HEIGHT - BOTTOM, TOP)
     inner = Scale(across.low, across.high, 0.0, ACROSS)
     inner_up = Scale(up.low, up.high, HEIGHT - BOTTOM - TOP, 0.0)
     parts, keys = [], []
@@ -66,8 +71,8 @@ def line_chart(
         d = path(inner(x), inner_up(low)) if low is high else _area(inner(x), inner_up(low), inner_up(high))
         parts.append(element("path", class_=f"{'line' if low is high else 'area'} {look}", d=d, data_series=str(k)))
         keys.append(Key(f"{look} area", key, k))
-    keys += [Key("limit", f"{key} {label(value)}") for key, value in drawn.items()]
-    rules = joined(_across(inner_up.at(value)) for value in drawn.values())
+    keys += [Key("limit", f"{key} {_both(values)}") for key, values in drawn.items()]
+    rules = joined(_across(inner_up.at(value)) for value in _values(drawn))
     body = joined((axes(across, up, x_label, y_label), plot(across, up, *parts, rules)))
     data = {
         **_frame(across, up),
@@ -79,7 +84,7 @@ def line_chart(
         ],
     }
     said = "; ".join(_said(key, x, *pair, x_label) for key, pair in pairs.items())
-    said_limits = "".join(f"; {key} {label(value)}" for key, value in (limits or {}).items())
+    said_limits = "".join(f"; {key} {_both(values)}" for key, values in (limits or {}).items())
     return Chart(
         name=name,
         title=title,
@@ -100,8 +105,8 @@ def scatter(
     y: Array,
     x_label: str,
     y_label: str,
-    limits_x: Mapping[str, float] | None = None,
-    limits_y: Mapping[str, float] | None = None,
+    limits_x: Limits | None = None,
+    limits_y: Limits | None = None,
     extra: Mapping[str, Array] | None = None,
 ) -> Chart:
     """Points in a plane, such as torque against speed.
@@ -118,19 +123,19 @@ def scatter(
         extra: by name, more numbers of each point, for who points at it.
     """
     (near_x, far_x), (near_y, far_y) = _near(limits_x or {}, [(x, x)]), _near(limits_y or {}, [(y, y)])
-    across = linear([x, list(near_x.values())], LEFT, WIDTH - RIGHT)
-    up = linear([y, list(near_y.values())], HEIGHT - BOTTOM, TOP)
+    across = linear([x, _values(near_x)], LEFT, WIDTH - RIGHT)
+    up = linear([y, _values(near_y)], HEIGHT - BOTTOM, TOP)
     px, py = across(x), up(y)
     good = np.isfinite(px) & np.isfinite(py)
     dots = "".join(f"M{a:.1f} {b:.1f}h0" for a, b in zip(px[good].tolist(), py[good].tolist(), strict=True))
     lines = [
-        *(_rule(across.at(value), across.at(value), up.start, up.end) for value in near_x.values()),
-        *(_rule(across.start, across.end, up.at(value), up.at(value)) for value in near_y.values()),
+        *(_rule(across.at(value), across.at(value), up.start, up.end) for value in _values(near_x)),
+        *(_rule(across.start, across.end, up.at(value), up.at(value)) for value in _values(near_y)),
     ]
     zero = [_zero(across, up)] if across.low < 0.0 < across.high else []
     body = joined((axes(across, up, x_label, y_label), *zero, element("path", class_="dots s1", d=dots), *lines))
     keys = [Key("dots", "rows of the trajectory")] if extra else []
-    keys += [Key("limit", f"{key} {label(value)}") for key, value in (near_x | near_y).items()]
+    keys += [Key("limit", f"{key} {_both(values)}") for key, values in (near_x | near_y).items()]
     data = {
         **_frame(across, up),
         "x": _numbers(x),
@@ -139,7 +144,7 @@ def scatter(
         "extra": {key: _numbers(values) for key, values in (extra or {}).items()},
     }
     limits = {**(limits_x or {}), **(limits_y or {})}
-    said = "".join(f"; {key} {label(value)}" for key, value in limits.items())
+    said = "".join(f"; {key} {_both(values)}" for key, values in limits.items())
     ranges = " and ".join(
         f"{axis} from {label(span([own])[0])} to {label(span([own])[1])}" for axis, own in ((x_label, x), (y_label, y))
     )
@@ -150,24 +155,35 @@ def scatter(
         body=body,
         height=HEIGHT,
         legend=tuple(keys),
-        note=_beyond(far_x | far_y),
+        note=_beyond({**far_x, **far_y}),
         kind="points",
         data=data,
     )
 
 
-def _near(limits: Mapping[str, float], ranges: Iterable[Range]) -> tuple[dict[str, float], dict[str, float]]:
+def _near(limits: Limits, ranges: Iterable[Range]) -> tuple[dict[str, tuple[float, ...]], dict[str, tuple[float, ...]]]:
     """The limits that are drawn, and those that are far beyond all numbers."""
     low, high = span([side for pair in ranges for side in pair])
     size = max(abs(low), abs(high))
-    finite = {key: value for key, value in limits.items() if math.isfinite(value)}
-    drawn = {key: value for key, value in finite.items() if abs(value) <= FAR * size}
-    return drawn, {key: value for key, value in finite.items() if key not in drawn}
+    finite = {key: kept for key, own in limits.items() if (kept := tuple(x for x in own if math.isfinite(x)))}
+    drawn = {key: own for key, own in finite.items() if max(map(abs, own)) <= FAR * size}
+    return drawn, {key: own for key, own in finite.items() if key not in drawn}
 
 
-def _beyond(far: Mapping[str, float]) -> str:
+def _values(limits: Limits) -> list[float]:
+    return [value for own in limits.values() for value in own]
+
+
+def _both(values: tuple[float, ...]) -> str:
+    """A limit in both directions, or each."""
+    if len(values) == 2 and values[0] == -values[1]:
+        return f"\u00b1{label(max(values))}"
+    return ", ".join(map(label, values))
+
+
+def _beyond(far: Limits) -> str:
     """What is not drawn."""
-    return f"beyond the picture: {', '.join(f'{key} {label(value)}' for key, value in far.items())}" if far else ""
+    return f"beyond the picture: {', '.join(f'{key} {_both(own)}' for key, own in far.items())}" if far else ""
 
 
 def _wide(low: float, high: float) -> tuple[float, float]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 
 from markupsafe import Markup, escape
@@ -41,6 +42,11 @@ def joined(parts: Iterable[Markup]) -> Markup:
 
 def _written(value: str | float) -> str:
     return value if isinstance(value, str) else short(value)
+
+
+def slug(name: str) -> str:
+    """A name in letters that every file system has."""
+    return re.sub(r"[^A-Za-z0-9_-]+", "-", name).strip("-")[:40] or "unnamed"
 
 
 def short(value: float) -> str:
