@@ -26,6 +26,8 @@ PACKAGES = (
     "rttrr_pin.validation",
     "rttrr_pin.diagnosis",
     "rttrr_pin.laws",
+    "rttrr_pin.trajectories",
+    "rttrr_pin.loads",
     "rttrr_pin.conformance",
     "rttrr_pin.conformance.kit.strategies",
     "rttrr_pin.inspection",

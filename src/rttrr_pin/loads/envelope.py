@@ -25,7 +25,8 @@ class JointEnvelope:
         self._model, nv = model, model.nv
         self._peaks = {name: Peaks(nv) for name in ("tau", "speed", "power", "lowest", "highest")}
         self._means = Means(nv)
-        self._direction, self._reversals = np.zeros(nv), np.zeros(nv, dtype=int)
+        self._reversals = [0] * nv
+        self._ahead: list[bool | None] = [None] * nv
         self._given, self._taken = np.zeros((2, nv))
         self._coordinates = _coordinates(model)
 
@@ -49,15 +50,18 @@ class JointEnvelope:
 
     def _count_reversals(self, rates: Array, errors: Array | None) -> None:
         """A change of sign, but for speeds that may as well be zero."""
-        signs = np.sign(rates)
+        least: Array | float = 0.0
         if errors is not None:
-            signs[np.abs(rates) <= BAND * np.sqrt((errors[:, :, 1, :] ** 2).sum(axis=-1)).T] = 0.0
-        for j, own in enumerate(signs):
-            moving = np.concatenate([[self._direction[j]], own])
-            moving = moving[moving != 0.0]
-            if len(moving):
-                self._reversals[j] += np.count_nonzero(moving[1:] != moving[:-1])
-                self._direction[j] = moving[-1]
+            least = BAND * np.sqrt((errors[:, :, 1, :] ** 2).sum(axis=-1)).T
+        ahead, back = rates > least, rates < -least
+        moving = ahead | back
+        for j, own in enumerate(ahead):
+            signs = own if moving[j].all() else own[moving[j]]
+            if len(signs):
+                self._reversals[j] += int(np.count_nonzero(signs[1:] != signs[:-1]))
+                before = self._ahead[j]
+                self._reversals[j] += before is not None and before != signs[0]
+                self._ahead[j] = bool(signs[-1])
 
     def marked(self) -> Iterator[tuple[str, Place]]:
         """The states that matter, and why."""
@@ -82,7 +86,7 @@ class JointEnvelope:
                 gear_torque=by_rate[j],
                 speed=states.peak(peaks["speed"][j]),
                 mean_speed=float(speeds[j]),
-                reversals=int(self._reversals[j]),
+                reversals=self._reversals[j],
                 power=states.peak(peaks["power"][j], "power", j),
                 energy_in=float(self._given[j]),
                 energy_back=float(self._taken[j]),

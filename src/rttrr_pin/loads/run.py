@@ -10,6 +10,7 @@ from pathlib import Path
 
 from rttrr_pin.core.arguments import path_of
 from rttrr_pin.core.arrays import Array
+from rttrr_pin.core.batch import keep_memory
 from rttrr_pin.core.conventions import convention as convention_of
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load, Payloads, loads_of
@@ -120,6 +121,7 @@ class _Run:
 
     def go(self, progress: Callable[[int], None] | None, ratings: Ratings) -> None:
         """Through all rows, and to the envelope; files are in their places afterwards."""
+        keep_memory()
         with Outputs(self._robot.model, self._wanted) as outputs:
             for rows, weights in self._clock.each("read", weighted(self._blocks())):
                 self._add(rows, weights, outputs)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from rttrr_pin.core.arguments import whole_number
-from rttrr_pin.core.batch import blocks
+from rttrr_pin.core.batch import blocks, keep_memory
 from rttrr_pin.core.model import Model
 from rttrr_pin.core.payload import Load, RandomPayload, same_loads
 from rttrr_pin.errors import InputError
@@ -23,9 +23,6 @@ BLOCK = 4096
 
 NUMBERS = 2**20
 """Results of a program in a block, at most: larger robots take fewer states at a time."""
-
-KEPT = 31 * 2**20
-"""Bytes that are handed back once before a run, see `_keep_memory`."""
 
 Progress = Callable[[int], None]
 """Called with the number of states done so far."""
@@ -72,23 +69,13 @@ class States:
 
     def blocks(self, n_states: int, progress: Progress | None) -> Iterator[Batch]:
         """All states, some at a time; progress is called with the number done after each."""
-        _keep_memory()
+        keep_memory()
         model = self.sampler.model
         size = max(1, min(BLOCK, NUMBERS // (model.nv + 12 * len(model.links))))
         for part in blocks(self.count(n_states), size):
             yield self.batch(part.start, part.stop - part.start)
             if progress is not None:
                 progress(part.stop)
-
-
-def _keep_memory() -> None:
-    """Have the memory of one block serve the next.
-
-    The C library of Linux hands large arrays back to the system, and each page of the next block's is a fault: half of
-    the time of a run, and more on a virtual machine. It goes by the largest array that was handed back, up to 32 MiB:
-    arrays up to that size, and twice as much in all, it keeps from then on. This one is never written to.
-    """
-    np.empty(KEPT, dtype=np.uint8)
 
 
 def table_of(programs: Sequence[Implementation], payload: Load | RandomPayload | None) -> Batch | None:
