@@ -232,8 +232,8 @@ class Canvas:
                 return
             corners, faces = self._solids[solid]
             self._nodes[name] = self.server.scene.add_batched_meshes_simple(
-                name, corners, faces, own.wxyz, own.position, batched_scales=_f32(own.scale), batched_colors=_linear(colour),
-                lod="off", cast_shadow=False, receive_shadow=False, **look,
+                name, corners, faces, own.wxyz, own.position, batched_scales=_f32(own.scale),
+                batched_colors=_linear(colour), lod="off", cast_shadow=False, receive_shadow=False, **look,
             )  # fmt: skip
             return
         node.visible = visible

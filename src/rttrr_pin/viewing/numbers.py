@@ -26,7 +26,7 @@ STYLE = """<style>
 .rp table{border-collapse:collapse;font:12px/1.45 ui-monospace,monospace;width:100%}
 .rp th{text-align:right;white-space:nowrap;font-weight:600;border-bottom:1px solid currentColor;padding:0 .35em}
 .rp td{text-align:right;padding:0 .35em;white-space:nowrap;font-variant-numeric:tabular-nums}
-.rp th:first-child,.rp td:first-child{text-align:left;white-space:normal;overflow-wrap:anywhere;max-width:11em}
+.rp th:first-child,.rp td:first-child{text-align:left;white-space:normal;overflow-wrap:anywhere;min-width:5em;max-width:11em}
 .rp{padding:0 .6em}
 .rp p{margin:.4em 0;font-size:12px;line-height:1.4}
 .rp .over{color:#c92a2a;font-weight:600}
@@ -49,42 +49,45 @@ def text(words: object) -> str:
 
 
 def table(head: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """A table of cells that are markup already."""
+    """A table of cells that are markup already; a share above 100 % stands out."""
     top = "".join(f"<th>{cell}</th>" for cell in head)
-    body = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>" for row in rows)
+    body = "".join("<tr>" + "".join(map(_cell, row)) + "</tr>" for row in rows)
     return f"<table><thead><tr>{top}</tr></thead><tbody>{body}</tbody></table>"
 
 
+def _cell(content: str) -> str:
+    over = content.endswith("%") and float(content[:-1]) > 100.0
+    return f'<td class="over">{content}</td>' if over else f"<td>{content}</td>"
+
+
 def joint_cells(model: Model, state: State, numbers: Numbers) -> list[list[str]]:
-    """For each degree of freedom q, v, a and the tau of each program."""
+    """For each degree of freedom q, v, a, the tau of each program, its unit, and of one alone its share of the limit."""
     q = displacement(model, state.q)
     taus = [own.get("tau") for own in numbers.values.values()]
-    return [
-        [*map(digits, (q[k], state.v[k], state.a[k])), *("" if tau is None else digits(float(tau[k])) for tau in taus)]
-        for k in range(model.nv)
-    ]
+    limits = [joint.limits.effort for joint in model.moving for _ in range(joint.nv)]
+    rows = []
+    for k in range(model.nv):
+        row = [*map(digits, (q[k], state.v[k], state.a[k])), *("" if x is None else digits(float(x[k])) for x in taus)]
+        row.append("N m" if model.rotations[k] else "N")
+        rows.append([*row, _share(taus[0], k, limits[k])] if len(taus) == 1 else row)
+    return rows
 
 
 def joint_table(model: Model, state: State, numbers: Numbers) -> str:
-    """q, v, a and tau of each degree of freedom, and the share of its limit."""
+    """The same with the names of the degrees of freedom and of the programs."""
     names, single = list(numbers.values), len(numbers.values) == 1
-    limits = [joint.limits.effort for joint in model.moving for _ in range(joint.nv)]
-    rows = []
-    for k, cells in enumerate(joint_cells(model, state, numbers)):
-        unit = "N m" if model.rotations[k] else "N"
-        share = _share(numbers.values[names[0]].get("tau"), k, limits[k]) if single else []
-        rows.append([text(model.v_names[k]), *cells, unit, *share])
+    cells = zip(model.v_names, joint_cells(model, state, numbers), strict=True)
+    rows = [[text(name), *row] for name, row in cells]
     tau = "\N{GREEK SMALL LETTER TAU}"
     columns = [tau] if single else [f"{tau} {text(own)}" for own in names]
     return table(["joint", "q", "v", "a", *columns, "", *["of limit"] * single], rows)
 
 
-def _share(tau: Array | None, k: int, limit: float) -> list[str]:
+def _share(tau: Array | None, k: int, limit: float) -> str:
     """How much of the limit is used; empty where there is none."""
     if tau is None or not np.isfinite(limit) or limit <= 0.0:
-        return [""]
-    share = abs(float(tau[k])) / limit
-    return [f'<span class="over">{share:.0%}</span>' if share > 1.0 else f"{share:.0%}"]
+        return ""
+    return f"{abs(float(tau[k])) / limit:.0%}"
 
 
 def link_table(model: Model, link: int, values: Mapping[str, Array], name: str = "") -> str:
