@@ -38,6 +38,9 @@ SMALL = 0.01
 LARGEST = 20.0
 """Of the size of the robot: larger ellipsoids would hide all else, and are not drawn."""
 
+FARTHEST = 1e30
+"""Metres: what is drawn is drawn in single precision."""
+
 THINGS = ("bodies", "skeleton", "link frames", "centres of mass", "inertia ellipsoids", "f", "n", "F", "N", "names")
 """What can be shown and hidden."""
 
@@ -118,7 +121,7 @@ class Canvas:
         with self.server.atomic():
             turns = wxyz_of(where.R)
             for i in range(len(self.model.links)):
-                self._links[i].wxyz, self._links[i].position = turns[i], where.p[i]
+                self._links[i].wxyz, self._links[i].position = turns[i], np.clip(where.p[i], -FARTHEST, FARTHEST)
             for node in self._parts:
                 node.visible = "bodies" in shown.things
                 node.opacity = shown.opacity if shown.opacity < 1.0 else None
@@ -232,7 +235,7 @@ class Canvas:
                 return
             corners, faces = self._solids[solid]
             self._nodes[name] = self.server.scene.add_batched_meshes_simple(
-                name, corners, faces, own.wxyz, own.position, batched_scales=_f32(own.scale),
+                name, corners, faces, own.wxyz, _f32(own.position), batched_scales=_f32(own.scale),
                 batched_colors=_linear(colour), lod="off", cast_shadow=False, receive_shadow=False, **look,
             )  # fmt: skip
             return
@@ -271,4 +274,4 @@ def _linear(colour: tuple[int, int, int]) -> tuple[int, int, int]:
 
 def _f32(x: Array) -> Any:
     """As viser sends it."""
-    return np.ascontiguousarray(x, dtype=np.float32)
+    return np.ascontiguousarray(np.clip(x, -FARTHEST, FARTHEST), dtype=np.float32)

@@ -26,7 +26,7 @@ STYLE = """<style>
 .rp table{border-collapse:collapse;font:12px/1.45 ui-monospace,monospace;width:100%}
 .rp th{text-align:right;white-space:nowrap;font-weight:600;border-bottom:1px solid currentColor;padding:0 .35em}
 .rp td{text-align:right;padding:0 .35em;white-space:nowrap;font-variant-numeric:tabular-nums}
-.rp th:first-child,.rp td:first-child{text-align:left;white-space:normal;overflow-wrap:anywhere;min-width:5em;max-width:11em}
+.rp th:first-child,.rp td:first-child{text-align:left;white-space:normal;overflow-wrap:anywhere;min-width:5em}
 .rp{padding:0 .6em}
 .rp p{margin:.4em 0;font-size:12px;line-height:1.4}
 .rp .over{color:#c92a2a;font-weight:600}
@@ -61,7 +61,7 @@ def _cell(content: str) -> str:
 
 
 def joint_cells(model: Model, state: State, numbers: Numbers) -> list[list[str]]:
-    """For each degree of freedom q, v, a, the tau of each program, its unit, and of one alone its share of the limit."""
+    """For each degree of freedom q, v, a, each program's tau, its unit, and of one alone its share of the limit."""
     q = displacement(model, state.q)
     taus = [own.get("tau") for own in numbers.values.values()]
     limits = [joint.limits.effort for joint in model.moving for _ in range(joint.nv)]

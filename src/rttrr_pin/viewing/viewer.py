@@ -250,7 +250,11 @@ class Viewer:
         """Compute the state and draw it."""
         self._evaluate()
         look, state = self.look, self.whole_state
-        self.canvas.draw(placement(self.model, state.q), self.arrows(), look)
+        where = placement(self.model, state.q)
+        if all(np.isfinite(x).all() for x in (where.R, where.p, where.com)):
+            self.canvas.draw(where, self.arrows(), look)
+        else:
+            self.numbers, self.error = None, "the place of a link is beyond doubles: the picture stays as it was"
         self.panel.numbers.content = STYLE + f'<div class="rp">{self._numbers_shown(state)}</div>'
         self.panel.link_numbers.content = STYLE + f'<div class="rp">{self._link_shown(state)}</div>'
         self.panel.scale.content = STYLE + f'<div class="rp"><p><b>{look.scale}</b><br>{legend()}</p></div>'
