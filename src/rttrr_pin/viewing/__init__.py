@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from rttrr_pin.lazy import lazy
 
 if TYPE_CHECKING:
-    from rttrr_pin.viewing.view import state_of as state_of
-    from rttrr_pin.viewing.view import view as view
+    from rttrr_pin.viewing.run import state_of as state_of
+    from rttrr_pin.viewing.run import view as view
 
-__getattr__, __dir__, __all__ = lazy(__name__, {"view": ("state_of", "view")})
+__getattr__, __dir__, __all__ = lazy(__name__, {"run": ("state_of", "view")})

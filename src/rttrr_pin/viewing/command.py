@@ -46,8 +46,8 @@ def view(
     It serves on this machine alone, says its address, and ends with Ctrl-C.
     """
     from rttrr_pin.trajectories import named
-    from rttrr_pin.viewing.view import state_of
-    from rttrr_pin.viewing.view import view as show
+    from rttrr_pin.viewing.run import state_of
+    from rttrr_pin.viewing.run import view as show
 
     options = RunOptions(subject=subject or "kernel", reference=(reference,), **run)
     options.check_target(html, [] if trajectory is None else [Path(trajectory)], "--html")
