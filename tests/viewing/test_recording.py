@@ -48,6 +48,7 @@ def test_what_is_kept_does_not_depend_on_blocks(size: int, kept: int, monkeypatc
 
 def test_the_first_of_equals_and_what_is_no_number_is_the_worst() -> None:
     assert recorded("x", [rows([1, 2, 2])], by_q).worst == 1
+    assert recorded("x", (rows([1, 2, 2]).taken(slice(k, k + 1)) for k in range(3)), by_q).worst == 1
     assert recorded("x", [rows([1, float("nan"), 5, float("nan")])], by_q).worst == 1
     assert recorded("x", [rows([-3, -1, -2])], by_q).worst == 1
 

@@ -117,7 +117,7 @@ def _turns(direction: Array) -> Array:
     return np.asarray(quaternion / np.linalg.norm(quaternion, axis=-1, keepdims=True))
 
 
-AROUND = 20
+AROUND = 32
 """Sides of the solids that stand for round ones."""
 
 

@@ -23,7 +23,7 @@ MEANING = {
 }
 
 STYLE = """<style>
-.rp table{border-collapse:collapse;font:12px/1.45 ui-monospace,monospace;width:100%}
+.rp table{border-collapse:collapse;font:11.5px/1.5 ui-monospace,monospace;width:100%}
 .rp th{text-align:right;white-space:nowrap;font-weight:600;border-bottom:1px solid currentColor;padding:0 .35em}
 .rp td{text-align:right;padding:0 .35em;white-space:nowrap;font-variant-numeric:tabular-nums}
 .rp th:first-child,.rp td:first-child{text-align:left;white-space:normal;overflow-wrap:anywhere;min-width:5em}
@@ -61,13 +61,14 @@ def _cell(content: str) -> str:
 
 
 def joint_cells(model: Model, state: State, numbers: Numbers) -> list[list[str]]:
-    """For each degree of freedom q, v, a, each program's tau, its unit, and of one alone its share of the limit."""
+    """For each degree of freedom q, v, a, tau, unit and share of the limit; of several programs q, each tau, unit."""
     q = displacement(model, state.q)
     taus = [own.get("tau") for own in numbers.values.values()]
     limits = [joint.limits.effort for joint in model.moving for _ in range(joint.nv)]
     rows = []
     for k in range(model.nv):
-        row = [*map(digits, (q[k], state.v[k], state.a[k])), *("" if x is None else digits(float(x[k])) for x in taus)]
+        motion = (q[k], state.v[k], state.a[k]) if len(taus) == 1 else (q[k],)
+        row = [*map(digits, motion), *("" if x is None else digits(float(x[k])) for x in taus)]
         row.append("N m" if model.rotations[k] else "N")
         rows.append([*row, _share(taus[0], k, limits[k])] if len(taus) == 1 else row)
     return rows
@@ -75,12 +76,10 @@ def joint_cells(model: Model, state: State, numbers: Numbers) -> list[list[str]]
 
 def joint_table(model: Model, state: State, numbers: Numbers) -> str:
     """The same with the names of the degrees of freedom and of the programs."""
-    names, single = list(numbers.values), len(numbers.values) == 1
+    names, tau = list(numbers.values), "\N{GREEK SMALL LETTER TAU}"
+    columns = ["v", "a", tau, "", "of limit"] if len(names) == 1 else [*(f"{tau} {text(own)}" for own in names), ""]
     cells = zip(model.v_names, joint_cells(model, state, numbers), strict=True)
-    rows = [[text(name), *row] for name, row in cells]
-    tau = "\N{GREEK SMALL LETTER TAU}"
-    columns = [tau] if single else [f"{tau} {text(own)}" for own in names]
-    return table(["joint", "q", "v", "a", *columns, "", *["of limit"] * single], rows)
+    return table(["joint", "q", *columns], [[text(name), *row] for name, row in cells])
 
 
 def _share(tau: Array | None, k: int, limit: float) -> str:

@@ -70,7 +70,7 @@ class Panel:
             self._add_link()
             self.link_numbers = self.gui.add_html("")
         numbers.dock_left()
-        numbers.set_width(430)
+        numbers.set_width(460)
         self.gui.main_panel.dock_right()
         tabs = self.gui.add_tab_group()
         with tabs.add_tab("Motion"):

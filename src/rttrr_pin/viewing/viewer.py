@@ -74,7 +74,7 @@ class Viewer:
         self._playing_since: float | None = None
         self._followed = 0.0
         where = placement(model, self.state.q)
-        self.reach = reach(model, where)
+        self.reach = max(reach(model, own) for own in (where, placement(model, at_rest(model).q)))
         self.server = open_server(port, text(model.name))
         try:
             self.canvas = Canvas(self.server, model, subject.looks, where, self.reach)
@@ -87,8 +87,9 @@ class Viewer:
             raise
 
     def _contents(self) -> Contents:
-        bodies = {"bodies"} if self.canvas.has_bodies else {"skeleton"}
-        things = frozenset({"f", "n", "centres of mass"} | bodies)
+        bodies = {"bodies"} if self.canvas.has_bodies else set()
+        skeleton = {"skeleton"} if self.subject.looks.missing or not bodies else set()
+        things = frozenset({"f", "n", "centres of mass"} | bodies | skeleton)
         weight = 9.81 * sum(abs(link.mass) for link in self.model.links)
         opacity = 0.4 if self.canvas.has_bodies else 0.0
         return Contents(self.model, self.evaluator.names, self.subject.recording, things, opacity, min(weight, 1e6))
