@@ -28,6 +28,7 @@ PACKAGES = (
     "rttrr_pin.laws",
     "rttrr_pin.trajectories",
     "rttrr_pin.loads",
+    "rttrr_pin.viewing",
     "rttrr_pin.conformance",
     "rttrr_pin.conformance.kit.strategies",
     "rttrr_pin.inspection",
