@@ -61,13 +61,13 @@ def columns_of_file(names: Sequence[str], model: Model, file: str, more: Sequenc
         InputError: time or coordinates are not there, some joints lack a column, or two columns are one coordinate.
         UnknownNameError: a column is of a joint that the robot has not.
     """
-    there = set(names)
+    there, joints = set(names), {joint.name for joint in model.joints}
     time, unit = time_column(names, file)
     notes: list[str] = []
     labels: dict[str, tuple[str, ...]] = {}
     for key in ("q", "v", "a", *more):
         own = model.q_names if key == "q" else model.v_names
-        style = _style(key, own, there, file, required=key not in ("v", "a"))
+        style = _style(key, own, there, joints, file)
         if style is None:
             continue
         labels[key] = _spelled(style, key, own)
@@ -75,7 +75,6 @@ def columns_of_file(names: Sequence[str], model: Model, file: str, more: Sequenc
             notes.append(f"{key} is read from {listed(labels[key], 3)}")
     loads = payloads_of_file(names, model, file, labels)
     read = {time, *(name for own in labels.values() for name in own)}
-    _check_unknown(names, labels, model, file)
     if rest := [shortened(name) for name in names if name not in read]:
         notes.append(f"{'column' if len(rest) == 1 else 'columns'} not read: {listed(rest)}")
     return Columns(time, unit, labels, loads, tuple(notes))
@@ -116,14 +115,15 @@ def time_column(names: Sequence[str], file: str) -> tuple[str, float | None]:
     return name, UNITS[unit] if unit else None
 
 
-def _style(key: str, labels: Sequence[str], there: set[str], file: str, required: bool) -> str | None:
-    """How the columns of q, v or a are spelled; None where there are none and none are required."""
+def _style(key: str, labels: Sequence[str], there: set[str], joints: set[str], file: str) -> str | None:
+    """How the columns of q, v, a or tau are spelled; None where v or a are not there."""
     if not labels:
         return DOCUMENTED
     styles = dict.fromkeys([DOCUMENTED, *_plain(key), *_of_topics(key, labels[0], there)])
     counts = {style: sum(name in there for name in _spelled(style, key, labels)) for style in styles}
     whole = [style for style, count in counts.items() if count == len(labels)]
     if DOCUMENTED in whole:
+        _check_unknown(key, labels, there, joints, file)
         return DOCUMENTED
     if len(whole) > 1:
         several = listed(_spelled(style, key, labels)[0] for style in whole)
@@ -131,7 +131,9 @@ def _style(key: str, labels: Sequence[str], there: set[str], file: str, required
     if whole:
         return whole[0]
     most = max(counts, key=counts.__getitem__)
-    if counts[most] or required:
+    if most == DOCUMENTED:
+        _check_unknown(key, labels, there, joints, file)
+    if counts[most] or key not in ("v", "a"):
         _complete(_spelled(most, key, labels), there, file)
     return None
 
@@ -164,17 +166,9 @@ def _complete(columns: Sequence[str], there: set[str], file: str) -> None:
         raise InputError(f"{file} lacks the columns {listed(map(shortened, missing), 8)}: see docs/notation.md")
 
 
-def _check_unknown(names: Sequence[str], labels: Mapping[str, tuple[str, ...]], model: Model, file: str) -> None:
-    """Columns that are spelled like those that are read are of a joint of the robot, if one that follows another."""
-    joints = {joint.name for joint in model.joints}
-    for key, own in labels.items():
-        known = set(own)
-        if key == PAYLOAD or not own or own[0] != DOCUMENTED.format(key=key, label=_first(key, model)):
-            continue
-        for name in names:
-            if name.startswith(f"{key}_") and name not in known and name[len(key) + 1 :] not in joints:
-                raise UnknownNameError("column", shortened(name), own, f"in {file}")
-
-
-def _first(key: str, model: Model) -> str:
-    return (model.q_names if key == "q" else model.v_names)[0]
+def _check_unknown(key: str, labels: Sequence[str], there: set[str], joints: set[str], file: str) -> None:
+    """Columns that are spelled as documented are of a joint of the robot, if one that follows another, or is fixed."""
+    known = _spelled(DOCUMENTED, key, labels)
+    for name in sorted(there):
+        if name.startswith(f"{key}_") and name not in known and name[len(key) + 1 :] not in joints:
+            raise UnknownNameError("column", shortened(name), known, f"in {file}")

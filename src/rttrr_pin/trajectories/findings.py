@@ -13,9 +13,9 @@ from rttrr_pin.reporting.results import counted
 
 SENTENCES: Mapping[str, str] = {
     "not finite": "{column} is {value} in {rows}, the first in {place} {first}: left out",
-    "repeated time": "{rows} repeat the time of the row before, the first in {place} {first}: left out",
+    "repeated time": "the time of the row before is repeated in {rows}, the first in {place} {first}: left out",
     "gap": "{gaps} in time, the longest of {value:.3g} s before {place} {row}, the first before {place} {first}",
-    "short part": "{rows} are in parts too short to differentiate, the first in {place} {first}: left out",
+    "short part": "{rows} in parts too short to differentiate, the first in {place} {first}: left out",
     "turn": "{column} jumps by a turn before {rows}, the first in {place} {first}: its angle is taken to go on",
     "lower limit": "{column} is below its lower limit in {rows}, the first in {place} {first}, "
     "the least {value:.6g} in {place} {row}",
@@ -26,8 +26,8 @@ SENTENCES: Mapping[str, str] = {
     "quaternion": "the quaternion of {column} is not of length 1 in {rows}, the first in {place} {first}, "
     "at worst {value:.9g} in {place} {row}: divided by its length",
     "unknown joint": "{column} is no joint of the robot: left out of {rows}, the first {place} {first}",
-    "incomplete": "{rows} lack joints, the first in {place} {first}: left out",
-    "replaced": "{rows} are replaced by a trajectory that begins before they are reached, the first in {place} {first}",
+    "incomplete": "joints are missing in {rows}, the first in {place} {first}: left out",
+    "replaced": "{rows} replaced by a trajectory that begins before, the first in {place} {first}",
 }
 """By kind. Where a file can be read on, nothing is repaired in silence."""
 

@@ -47,9 +47,14 @@ EVEN = 1e-3
 LEAST = 2.0 * float(np.finfo(np.float64).eps)
 """Relative: numbers have no less noise than by their own rounding."""
 
-QUARTER = 0.25
-"""What knots twice as far apart cannot follow counts by half (its square by a quarter): these can follow more."""
+SMOOTHEST = 2.0 ** np.array([6.0, 5.0, 4.0])
+"""How much more of a smooth motion, its rate and its acceleration knots cannot follow that are twice as far apart."""
 
+MOST = 0.5
+"""Of the square of what knots twice as far apart cannot follow, at most."""
+
+CHOSEN = 1.15
+"""Times the variance of a fit of given knots: these are chosen by the same rows."""
 
 MULTIPLE = 0.02
 """How far numbers may be from whole ones by rounding and still be multiples of a step."""
@@ -184,19 +189,16 @@ class Window:
         return self._own[spans]
 
     def spans(self) -> list[int]:
-        """Numbers of spans to choose from, the most first: knots are sqrt(2) as far apart from one to the next."""
-        steps = self.count - 1
-        count = max(1, math.ceil(2 * math.log2(max(steps / 2 / FINEST, 1.0))))
-        return _spans(steps, [FINEST * 2 ** (k / 2) for k in range(count + 1)])
+        """Numbers of spans to choose from, the most first: halves of each are there too, so that knots are shared."""
+        most = int((self.count - 1) / FINEST)
+        return sorted((own for k in range(most.bit_length()) for own in {2**k, 3 * 2**k} if own <= most), reverse=True)
 
     def at_cutoff(self, cutoff: float) -> list[int]:
-        """The number of spans of a cut-off [Hz], and two wider ones."""
-        apart = 0.5 / cutoff / self.step
-        return _spans(self.count - 1, [apart, apart * math.sqrt(2.0), apart * 2.0])
-
-
-def _spans(steps: int, apart: Sequence[float]) -> list[int]:
-    return sorted({min(max(1, round(steps / own)), steps // 2) for own in apart}, reverse=True)
+        """About the number of spans of a cut-off [Hz], its half and its quarter."""
+        wanted = round((self.count - 1) * self.step * 2.0 * cutoff / 4)
+        most = int((self.count - 1) / FINEST) // 4
+        quarter = max(1, min(wanted, most))
+        return [4 * quarter, 2 * quarter, quarter]
 
 
 def fitted(t: Array, x: Array, cutoff: float | None = None) -> Fit:
@@ -219,7 +221,7 @@ def fitted(t: Array, x: Array, cutoff: float | None = None) -> Fit:
     grain = np.array([_grain(own) for own in x.T])
     for k in sorted(set(chosen.tolist())):
         own = np.flatnonzero(chosen == k)
-        near = [j for j in range(k, min(k + 3, len(spans))) if np.isfinite(tries[j][0]).all()]
+        near = [spans.index(half) for half in (spans[k], spans[k] // 2, spans[k] // 4) if half in spans]
         operators = [window.operator(spans[j]) for j in near]
         fits = [_orders(operator, tries[j][2][:, own]) for operator, j in zip(operators, near, strict=True)]
         rounding = LEAST * np.abs(x[:, own]).max(axis=0)
@@ -227,7 +229,7 @@ def fitted(t: Array, x: Array, cutoff: float | None = None) -> Fit:
         sigma = np.maximum(sigma, grain[own])
         off = _unfollowed(operators, fits, sigma**2)
         off[..., 0] += grain[own] ** 2  # a step of a sensor is no noise while it stands still
-        covariance[:, own] = operators[0].covariance[:, None] * sigma[:, None, None] ** 2
+        covariance[:, own] = CHOSEN * operators[0].covariance[:, None] * sigma[:, None, None] ** 2
         covariance[:, own[:, None], range(3), range(3)] += off
         orders[:, own] = fits[0] * scale
         noise[own], knots[own] = sigma, operators[0].apart * window.step
@@ -261,13 +263,26 @@ def _orders(operator: Operator, coefficients: Array) -> Array:
 
 
 def _unfollowed(operators: Sequence[Operator], fits: Sequence[Array], variance: Array) -> Array:
-    """The square of what a spline cannot follow, about, by what splines of wider knots cannot, (N, columns, 3)."""
-    own, most = np.diagonal(operators[0].covariance, axis1=1, axis2=2), np.zeros(fits[0].shape)
-    for operator, fit, weight in zip(operators[1:], fits[1:], (1.0, QUARTER), strict=False):
-        noise = np.abs(own - np.diagonal(operator.covariance, axis1=1, axis2=2))[:, None] * variance[:, None]
-        apart = _mean((fits[0] - fit) ** 2, 2.0 * operator.apart)
-        most = np.maximum(most, weight * np.maximum(apart - noise, 0.0))
-    return _most(most, 2.0 * operators[0].apart)
+    """The square of what a spline cannot follow, about, by what splines of wider knots cannot, (N, columns, 3).
+
+    With knots twice as far apart it is r times as much, where r is at most `SMOOTHEST`, for smooth motion, and 1 at a
+    jump; so the difference of both fits is r - 1 times as much.
+    """
+    if len(fits) < 3:
+        return np.zeros(fits[0].shape)
+    own, wider = (_beyond_noise(operators[k], operators[k + 1], fits[k] - fits[k + 1], variance) for k in range(2))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        r = np.sqrt(wider.sum(axis=0) / own.sum(axis=0))
+        r = np.where(np.isfinite(r), np.clip(r, 1.0, SMOOTHEST), SMOOTHEST)
+        weight = np.minimum(1.0 / (r - 1.0) ** 2, MOST)
+    return _most(weight * own, 2.0 * operators[0].apart)
+
+
+def _beyond_noise(finer: Operator, wider: Operator, difference: Array, variance: Array) -> Array:
+    """The mean square of a difference of two fits, less what noise makes of it: one's splines are the other's too."""
+    own, other = (np.diagonal(x.covariance, axis1=1, axis2=2) for x in (finer, wider))
+    noise = np.maximum(own - other, 0.0)[:, None] * variance[:, None]
+    return np.maximum(_mean(difference**2, 2.0 * wider.apart) - noise, 0.0)
 
 
 def _mean(x: Array, width: float) -> Array:
