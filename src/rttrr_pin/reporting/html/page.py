@@ -225,9 +225,18 @@ def _only_shown(value: Any) -> Any:
 
 def _data(chart: Chart) -> Markup:
     """The numbers of a picture as JSON, which no name in it can end."""
-    words = json.dumps({"kind": chart.kind, **(chart.data or {})}, separators=(",", ":"), allow_nan=False)
+    words = json.dumps(_harmless({"kind": chart.kind, **(chart.data or {})}), separators=(",", ":"), allow_nan=False)
     safe = words.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
-    return Markup(shown(safe))
+    return Markup(safe)
+
+
+def _harmless(data: Any) -> Any:
+    """The same data, with control characters of its texts as question marks."""
+    if isinstance(data, dict):
+        return {shown(key): _harmless(value) for key, value in data.items()}
+    if isinstance(data, list) and data and isinstance(data[0], str | dict):
+        return [_harmless(value) for value in data]
+    return shown(data) if isinstance(data, str) else data
 
 
 def points(title: str, items: Iterable[str]) -> tuple[Points, ...]:

@@ -11,8 +11,8 @@ from numpy.typing import ArrayLike
 
 from rttrr_pin.core.arrays import Array
 
-LEAST = 1e-12
-"""Of the size of the numbers: what they span at least, so that a constant has a scale."""
+LEAST = 2e-3
+"""Of the size of the numbers: what half a scale spans at least, so that its ticks differ in four digits."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,27 +5,27 @@
   const ACROSS = 1000, LEAST = 0.002;
   const view = { from: 0, to: 1 }; // the part of the time that is shown, in all pictures over time
 
+  const make = (tag, properties) => Object.assign(document.createElement(tag), properties);
+  const set = (element, attributes) => Object.entries(attributes).forEach(([name, value]) => element.setAttribute(name, value));
+
   const svg = (tag, attributes, text) => {
     const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
-    for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, value);
-    if (text !== undefined) made.textContent = text;
-    return made;
+    set(made, attributes);
+    return text === undefined ? made : Object.assign(made, { textContent: text });
   };
 
   const number = (x) => { // four digits, as the page writes them
     if (x === null) return "no number";
     const words = x !== 0 && Math.abs(x) < 1e-4 ? x.toExponential(3) : x.toPrecision(4);
     const [digits, exponent] = words.split("e");
-    const short = digits.includes(".") ? digits.replace(/\.?0+$/, "") : digits;
-    return exponent ? `${short}e${Number(exponent)}` : short;
+    return (digits.includes(".") ? digits.replace(/\.?0+$/, "") : digits) + (exponent ? `e${Number(exponent)}` : "");
   };
 
   const ticks = (low, high) => {
     const rough = (high - low) / 6, power = 10 ** Math.floor(Math.log10(rough));
     const step = ([1, 2, 5].find((k) => k * power >= rough * (1 - 1e-9)) || 10) * power;
-    const found = [];
-    for (let k = Math.ceil(low / step - 1e-9); k <= Math.floor(high / step + 1e-9); k += 1) found.push(k * step);
-    return [found, step];
+    const first = Math.ceil(low / step - 1e-9), last = Math.floor(high / step + 1e-9);
+    return [Array.from({ length: last - first + 1 }, (_, k) => (first + k) * step), step];
   };
 
   class Picture {
@@ -36,27 +36,21 @@
       this.inner = this.svg.querySelector("svg.plot");
       this.timed = this.data.kind === "time";
       [this.left, this.top, this.width, this.height] = this.data.plot;
-      this.read = document.createElement("div");
-      this.read.className = "read";
-      this.read.hidden = true;
-      this.read.setAttribute("aria-live", "polite");
+      this.read = make("div", { className: "read", hidden: true, ariaLive: "polite" });
       figure.append(this.read);
-      this.cursor = this.svg.appendChild(
-        this.timed ? svg("line", { class: "cursor", y1: this.top, y2: this.top + this.height }) : svg("circle", { class: "spot", r: 5 }));
+      this.cursor = this.svg.appendChild(this.timed ? svg("line", { class: "cursor", y1: this.top, y2: this.top + this.height }) : svg("circle", { class: "spot", r: 5 }));
       this.cursor.setAttribute("visibility", "hidden");
       this.index = -1;
       this.svg.setAttribute("tabindex", "0");
-      this.svg.addEventListener("pointermove", (event) => this.move(event));
-      this.svg.addEventListener("pointerleave", () => this.leave());
-      this.svg.addEventListener("blur", () => this.leave());
-      this.svg.addEventListener("keydown", (event) => this.key(event));
-      if (this.timed) this.dragging();
+      const react = { pointermove: (event) => this.move(event), pointerleave: () => this.leave(), blur: () => this.leave(), keydown: (event) => this.key(event) };
+      for (const [name, action] of Object.entries(react)) this.svg.addEventListener(name, action);
       this.toggles();
+      if (this.timed) this.dragging();
     }
 
     get shown() { // the numbers at the edges of the plot
       const [low, high] = this.data.at;
-      return [low + view.from * (high - low), low + view.to * (high - low)];
+      return [view.from, view.to].map((part) => low + part * (high - low));
     }
 
     place(event) { // a pointer in units of the picture
@@ -87,7 +81,7 @@
       const step = { ArrowLeft: -1, ArrowRight: 1 }[event.key];
       if (event.key === "Escape") this.leave();
       if (!step) return;
-      event.preventDefault();
+      event.preventDefault(); // no scrolling
       const last = this.data.x.length - 1, [low, high] = this.timed ? this.shown : [-Infinity, Infinity];
       const begun = this.index < 0 ? this.data.x.findIndex((x) => x >= low && x <= high) : this.index + step;
       this.show(Math.min(Math.max(begun, 0), last));
@@ -96,13 +90,11 @@
     show(i) {
       this.index = i;
       const [x, y] = this.at(i), scale = this.svg.getBoundingClientRect().width / this.svg.viewBox.baseVal.width;
-      const marks = this.timed ? { x1: x, x2: x } : { cx: x, cy: y };
-      for (const [name, value] of Object.entries(marks)) this.cursor.setAttribute(name, value);
+      set(this.cursor, this.timed ? { x1: x, x2: x } : { cx: x, cy: y });
       this.cursor.removeAttribute("visibility");
       this.read.textContent = this.lines(i).join("\n");
       this.read.hidden = false;
-      const wide = this.read.offsetWidth, room = this.figure.clientWidth;
-      const left = x * scale + 12 + wide < room ? x * scale + 12 : x * scale - wide - 12;
+      const wide = this.read.offsetWidth, room = this.figure.clientWidth, left = x * scale + 12 + wide < room ? x * scale + 12 : x * scale - wide - 12;
       this.read.style.left = `${Math.max(0, Math.min(left, room - wide))}px`;
       this.read.style.top = `${this.svg.offsetTop + (this.top + 4) * scale}px`;
     }
@@ -126,13 +118,11 @@
 
     toggles() {
       for (const item of this.figure.querySelectorAll("li[data-hides]")) {
-        const button = document.createElement("button");
-        button.type = "button";
-        button.setAttribute("aria-pressed", "true");
+        const button = make("button", { type: "button", ariaPressed: "true" });
         button.append(...item.childNodes);
         button.addEventListener("click", () => {
-          const on = button.getAttribute("aria-pressed") !== "true";
-          button.setAttribute("aria-pressed", on);
+          const on = button.ariaPressed !== "true";
+          button.ariaPressed = on;
           for (const part of this.inner.querySelectorAll(`[data-series="${item.dataset.hides}"]`)) part.style.display = on ? "" : "none";
         });
         item.append(button);
@@ -150,10 +140,8 @@
       });
       const edges = (event) => [begun, this.place(event)[0]].sort((a, b) => a - b).map((x) => Math.min(Math.max(x, this.left), this.left + this.width));
       this.svg.addEventListener("pointermove", (event) => {
-        if (begun === null) return;
-        const [a, b] = edges(event);
-        box.setAttribute("x", a);
-        box.setAttribute("width", b - a);
+        const [a, b] = begun === null ? [] : edges(event);
+        if (begun !== null) set(box, { x: a, width: b - a });
       });
       const end = (event, choose) => {
         if (begun === null) return;
@@ -163,9 +151,8 @@
         begun = null;
         if (choose && far > 6) look(a, b);
       };
-      this.svg.addEventListener("pointerup", (event) => end(event, true));
-      this.svg.addEventListener("pointercancel", (event) => end(event, false));
-      this.svg.addEventListener("dblclick", () => look(0, 1));
+      const react = { pointerup: (event) => end(event, true), pointercancel: (event) => end(event, false), dblclick: () => look(0, 1) };
+      for (const [name, action] of Object.entries(react)) this.svg.addEventListener(name, action);
     }
 
     redraw() {
@@ -183,29 +170,25 @@
 
   const pictures = [...document.querySelectorAll("figure")].filter((one) => one.querySelector("script")).map((one) => new Picture(one));
   const timed = pictures.filter((one) => one.timed);
-  const said = document.createElement("output");
-  said.className = "dim";
+  const said = make("output", { className: "dim" });
 
   const look = (from, to) => {
     const wide = Math.min(Math.max(to - from, LEAST), 1), begin = Math.min(Math.max(from, 0), 1 - wide);
     Object.assign(view, { from: begin, to: begin + wide });
-    for (const one of timed) one.redraw();
+    timed.forEach((one) => one.redraw());
     const [low, high] = timed[0].shown;
     said.textContent = `${number(low)} to ${number(high)} s`;
   };
 
   if (timed.length) {
-    const tools = document.createElement("div");
-    tools.className = "tools";
-    tools.setAttribute("role", "toolbar");
-    tools.setAttribute("aria-label", "Time shown");
+    const tools = make("div", { className: "tools", role: "toolbar", ariaLabel: "Time shown" });
     const middle = () => (view.from + view.to) / 2, wide = () => view.to - view.from;
     const actions = {
       "Zoom in": () => look(middle() - wide() / 4, middle() + wide() / 4), "Zoom out": () => look(middle() - wide(), middle() + wide()),
       "Earlier": () => look(view.from - wide() / 2, view.to - wide() / 2), "Later": () => look(view.from + wide() / 2, view.to + wide() / 2), "All": () => look(0, 1),
     };
     for (const [name, action] of Object.entries(actions)) {
-      const button = Object.assign(document.createElement("button"), { type: "button", textContent: name });
+      const button = make("button", { type: "button", textContent: name });
       button.addEventListener("click", action);
       tools.append(button);
     }
