@@ -173,7 +173,9 @@ class Cleaner:
     def _breaks(self, t: Array, numbers: NDArray[np.int64]) -> NDArray[np.int64]:
         """Gaps in time: by the usual distance here, since rates may change."""
         steps = np.diff(t, prepend=self._last_time)
-        self._last_time = float(t[-1])
+        first, self._last_time = math.isnan(self._last_time), float(t[-1])
+        if first and len(t) == 1:
+            return NONE
         least, most = float(np.nanmin(steps)), float(np.nanmax(steps))
         if most <= GAP * least and (len(t) >= FEW or most <= GAP * self.clock.step):
             return NONE

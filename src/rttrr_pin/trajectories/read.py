@@ -11,6 +11,7 @@ from rttrr_pin.core.arguments import path_of
 from rttrr_pin.core.model import Model
 from rttrr_pin.errors import InputError, UnknownNameError, shortened
 from rttrr_pin.robot import Robot
+from rttrr_pin.trajectories.built_in import PICK_AND_PLACE, pick_and_place
 from rttrr_pin.trajectories.clock import known_unit
 from rttrr_pin.trajectories.npz import npz_source
 from rttrr_pin.trajectories.parquet import parquet_source
@@ -78,10 +79,30 @@ def open_source(path: Path, model: Model, more: Sequence[str] = ()) -> Source:
     return opener(path, model, more)
 
 
-def named(text: str, robot: Robot) -> Trajectory:
-    """What a user calls a trajectory: a file.
+def named(
+    text: str,
+    robot: Robot,
+    *,
+    topic: str | None = None,
+    cutoff: float | None = None,
+    time_unit: str | None = None,
+) -> Trajectory:
+    """What a user calls a trajectory: a file, or `pick-and-place`.
+
+    Args:
+        text: a path, or the name.
+        robot: whose trajectory it is.
+        topic: as in `read_trajectory`.
+        cutoff: as in `read_trajectory`.
+        time_unit: as in `read_trajectory`.
 
     Raises:
         InputError, UnknownNameError, ImplementationError: as `read_trajectory`.
     """
-    return read_trajectory(text, robot)
+    if text != PICK_AND_PLACE:
+        return read_trajectory(text, robot, topic=topic, cutoff=cutoff, time_unit=time_unit)
+    for name, value in (("topic", topic), ("cutoff", cutoff), ("time_unit", time_unit)):
+        if value is not None:
+            option = f"--{name.replace('_', '-')}"
+            raise InputError(f"{name} is for files, and {PICK_AND_PLACE} is none: leave it out", {name: option})
+    return pick_and_place(robot)

@@ -29,9 +29,10 @@ class Trajectory(Summarised):
         model: of the robot.
         n_rows: rows of the file, of which some may be left out; None where nobody knows before they were read.
         notes: what a reader must know.
+        place: what a row is called in messages: line, row or message.
     """
 
-    __slots__ = ("_clock", "_cutoff", "_findings", "_record", "_source", "model", "n_rows", "name", "notes")
+    __slots__ = ("_clock", "_cutoff", "_findings", "_record", "_source", "model", "n_rows", "name", "notes", "place")
 
     def __init__(self, source: Source, model: Model, cutoff: float | None = None) -> None:
         """Look at the first rows.
@@ -41,7 +42,7 @@ class Trajectory(Summarised):
         """
         from rttrr_pin.trajectories.derivatives import Record
 
-        self.name, self.model, self.n_rows = source.name, model, source.n_rows
+        self.name, self.place, self.model, self.n_rows = source.name, source.place, model, source.n_rows
         self._source, self._cutoff = source, cutoff
         self._findings = Findings(source.place)
         self._record = Record.of_source(source, model, cutoff)
