@@ -37,10 +37,15 @@ def write_motion(path: Path, robot: str, rows: int = ROWS, noise: float = 1e-4) 
     np.savetxt(path, np.column_stack(columns), delimiter=",", header=header, comments="", fmt="%.9g")
 
 
+ODD = "</title></script><img src=x onerror=alert(1)>&'\"{{ 7 * 7 }}"
+"""A name of a joint."""
+
 COMMANDS: Mapping[str, tuple[int, list[str]]] = {
     "validate": (0, ["validate", "--states", "300"]),
     "validate-fails": (1, ["validate", "trr", "--subject", "wrong:wrong", "--reference", "kernel", "--states", "50"]),
     "validate-many": (0, ["validate", "robots", "--states", "20"]),
+    "validate-odd": (0, ["validate", "odd.urdf", "--states", "20"]),
+    "inspect-odd": (0, ["inspect", "odd.urdf"]),
     "diagnose": (1, ["diagnose", "trr", "--subject", "wrong:wrong", "--states", "100"]),
     "compare": (1, ["compare", "rttrr", "heavier.urdf", "--states", "20"]),
     "conform": (0, ["conform", "kernel", "--levels", "gravity", "--states", "4"]),

@@ -6,12 +6,13 @@ import json
 import re
 from collections.abc import Mapping
 from pathlib import Path
+from xml.sax.saxutils import quoteattr
 
 import pytest
 
 from rttrr_pin.cli import main
 from rttrr_pin.urdf.catalogue import bundled
-from support.reports import COMMANDS, WRONG, write_motion
+from support.reports import COMMANDS, ODD, WRONG, write_motion
 
 
 @pytest.fixture(scope="session")
@@ -22,6 +23,8 @@ def desk(tmp_path_factory: pytest.TempPathFactory) -> Path:
     limited = re.sub(r'velocity="[^"]*"', 'velocity="0.9"', re.sub(r'effort="[^"]*"', 'effort="60"', text))
     (folder / "limited.urdf").write_text(limited)
     (folder / "heavier.urdf").write_text(text.replace('value="3.75387"', 'value="3.9"'))
+    odd = bundled()["trr"].read_text().replace('"joint_2"', quoteattr(ODD))
+    (folder / "odd.urdf").write_text(odd)
     (folder / "wrong.py").write_text(WRONG)
     (folder / "robots").mkdir()
     for name in ("trr", "trtr"):

@@ -12,7 +12,7 @@ import pytest
 
 from rttrr_pin.reporting.html.scales import label
 from support.browser import Tabs, grave_findings, overflow
-from support.reports import COMMANDS, ROWS
+from support.reports import COMMANDS, ODD, ROWS
 
 pytestmark = pytest.mark.browser
 
@@ -48,6 +48,12 @@ def test_a_page_says_the_same_without_scripts(name: str, pages: Pages, tabs: Tab
     assert without.locator("svg.chart").count() == with_scripts.locator("svg.chart").count() > 1
     for part in ("h1", ".verdict", "table"):
         assert without.locator(part).all_inner_texts() == with_scripts.locator(part).all_inner_texts()
+
+
+@pytest.mark.parametrize("name", ["validate-odd", "inspect-odd"])
+def test_names_of_files_are_only_names(name: str, pages: Pages, tabs: Tabs) -> None:
+    page = tabs.open(pages[name])
+    assert ODD in page.locator("body").text_content() and page.locator("img").count() == 0
 
 
 def data(pages: Pages, name: str) -> Any:

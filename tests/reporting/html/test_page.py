@@ -54,6 +54,7 @@ def test_names_are_only_names() -> None:
     assert page.xpath("//b | //@onclick | //iframe | //img | //link | //comment()") == []
     scripts = page.xpath("//script")
     assert [one.get("type") for one in scripts] == ["application/json", None] and "alert" not in scripts[1].text
+    assert not set("<>&") & set(scripts[0].text)
     assert json.loads(scripts[0].text)["series"][0]["name"] == ODD.replace("\x1b", "?")
     assert "\x1b" not in text and "49" not in page.xpath("string(//h1)")
 
