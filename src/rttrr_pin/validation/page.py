@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Sequence
 
 from rttrr_pin.core.wrench import QUANTITIES
-from rttrr_pin.exact import Adjudication
 from rttrr_pin.reporting.html import (
     Bars,
     Block,
@@ -82,23 +82,25 @@ def validation_page(result: Validation, robot: Robot, worst: StateReport, comman
 
 
 def _where_to_look(result: Validation) -> Iterator[str]:
-    """Which program is right, in the states that exact arithmetic decided; then the first row that fails."""
-    shown = min(result.failing, ADJUDICATED)
-    for number, one in enumerate(result.adjudications):
-        yield _decided(one, passed=number >= shown)
+    """The first row that fails; then which program is right, in the states that exact arithmetic decided."""
     for reference in result.references:
         first = next((row for row in reference.rows if not row.passed), None)
         if first is not None:
             yield (
-                f"The first row beyond rounding against {reference.name} is {first.quantity} at {first.at}: "
-                f"{first.absolute.value:.3g} {first.unit} in state {first.absolute.state}, "
-                f"beyond it in {counted(first.failures, 'state')}"
+                f"The first row beyond rounding against {reference.name} is {first.quantity} at {first.at}: up to "
+                f"{first.absolute.value:.3g} {first.unit}, in state {first.absolute.state}; beyond rounding in "
+                f"{counted(first.failures, 'state')}"
             )
-
-
-def _decided(one: Adjudication, passed: bool) -> str:
-    kind = "the worst state within the tolerance" if passed else "beyond the tolerance"
-    return f"State {one.state}, {kind}, checked in interval arithmetic: {who_is_right(one, passed)}"
+    decided = min(result.failing, ADJUDICATED)
+    failing, passing = result.adjudications[:decided], result.adjudications[decided:]
+    if len(failing) > 1:
+        wrong = Counter(program.name for one in failing for program in one.wrong)
+        said = ", ".join(f"{name} is wrong in {number}" for name, number in wrong.items()) or "no program is wrong"
+        yield f"Of the {len(failing)} worst states, decided in interval arithmetic, {said}"
+    for kind, some in (("the worst", failing[:1]), ("the worst within the tolerance", passing)):
+        for one in some:
+            is_passing = kind != "the worst"
+            yield f"State {one.state}, {kind}, checked in interval arithmetic: {who_is_right(one, is_passing)}"
 
 
 def _histograms(result: Validation) -> Iterator[Chart]:

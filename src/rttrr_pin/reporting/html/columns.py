@@ -151,12 +151,12 @@ def bars(
         parts += (
             bar,
             element("text", cut(row, 20), x=x.start - 8, y=top + 15, class_="label end"),
-            element("text", f"{value:.3g}", x=end + 5, y=top + 15, class_="tick"),
+            element("text", f"{value:.3g}", x=end + 5, y=top + 15, class_="tick halo"),
         )
     bottom = TOP + len(values) * BAR + 4
     if mark is not None:
         at = x.at(mark[1])
-        parts.append(element("line", class_="limit", x1=at, x2=at, y1=TOP - 6, y2=bottom))
+        parts.insert(0, element("line", class_="limit", x1=at, x2=at, y1=TOP - 6, y2=bottom))
         parts.append(element("text", mark[0], x=at, y=TOP - 10, class_="tick middle"))
     body = joined((axes(x, Scale(0, 1, bottom, TOP), x_label, "", ()), *parts))
     text = f"{title}. {'; '.join(f'{row}: {value:.3g}' for row, value in values.items())}"
