@@ -15,6 +15,7 @@ from typing import Any
 
 from common import Lines, machine_of, result, table
 from conform_tables import CONFORM
+from loads_tables import LOADS
 from rttrr_pin.core.conventions import CONVENTIONS, POINTS
 
 TOP = Path(__file__).parents[1]
@@ -616,7 +617,7 @@ TABLES: dict[str, Callable[[], Lines]] = {
     "single precision": single_precision, "mutation scores": mutation_scores, "operations": operations,
     "peers": peers, "robots": robots, "speed": speed, "three numbers": three_numbers,
     "validate speed": validate_speed, "vectors": vectors,
-} | CONFORM  # fmt: skip
+} | CONFORM | LOADS  # fmt: skip
 """By the name in the marker."""
 
 MARKED = re.compile(r"(<!-- table: ([\w ]+) -->\n).*?(<!-- end: \2 -->)", re.DOTALL)

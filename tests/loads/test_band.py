@@ -6,20 +6,12 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import pytest
 
-from rttrr_pin import Robot, load
+from rttrr_pin import Robot
 from rttrr_pin.loads import compute_loads
 from rttrr_pin.loads.evaluation import Evaluator
 from rttrr_pin.loads.parts import BAND
 from support.trajectories import OfBlock, random_rows
-from support.trees import random_tree
-
-
-@pytest.fixture(scope="module", params=[5, 8])
-def tree(request: pytest.FixtureRequest) -> Robot:
-    """Joints of every type, floating and planar ones among them, and some that follow others."""
-    return load(random_tree(request.param, 7))
 
 
 def test_it_is_what_the_exact_derivatives_say(tree: Robot) -> None:
