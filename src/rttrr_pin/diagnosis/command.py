@@ -86,7 +86,7 @@ def diagnose(
     if html is not None or figures is not None:
         from rttrr_pin.diagnosis.pages import write_page
 
-        write_page(html, result, figures)
+        write_page(html, result, figures, {loaded.name: loaded})
     show()
     return AGREE if result.passed else DISAGREE
 

@@ -69,6 +69,6 @@ def compare(
     if html is not None or figures is not None:
         from rttrr_pin.diagnosis.pages import write_page
 
-        write_page(html, result, figures)
+        write_page(html, result, figures, {a: first, b: second} if a != b else {a: first})
     show_comparison(result, Output(quiet=quiet or "-" in (json, html)), full)
     return AGREE if result.passed else DISAGREE

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from rttrr_pin.diagnosis.descriptions.compare import Comparison
 from rttrr_pin.diagnosis.descriptions.compare_report import LEGEND, percent, remarks, values_of
@@ -11,7 +12,20 @@ from rttrr_pin.diagnosis.logs.log_diagnosis import LogDiagnosis
 from rttrr_pin.diagnosis.report import compared, place, sentence, told
 from rttrr_pin.diagnosis.results import Cause, Diagnosis, Residual
 from rttrr_pin.reporting import html
-from rttrr_pin.reporting.html import Bars, Causes, Page, Rows, Said, by_decades, code, of_longest, points
+from rttrr_pin.reporting.html import (
+    Bars,
+    Causes,
+    Figures,
+    Page,
+    Rows,
+    Said,
+    by_decades,
+    code,
+    of_longest,
+    points,
+    robot_drawing,
+)
+from rttrr_pin.robot import Robot
 
 ALIKE = "The same results in all of these states would have"
 
@@ -28,16 +42,35 @@ OF_TOLERANCE = (
 TEST = "A state as simple as could be found, as a test"
 
 
-def write_page(target: str | None, result: Diagnosis | LogDiagnosis | Comparison, figures: str | None = None) -> None:
-    """A result as a page, to a file or, where that is "-", to stdout."""
-    html.write_page(lambda: page_of(result), target, figures)
+Result = Diagnosis | LogDiagnosis | Comparison
 
 
-def page_of(result: Diagnosis | LogDiagnosis | Comparison) -> Page:
+def write_page(
+    target: str | None, result: Result, figures: str | None = None, robots: Mapping[str, Robot] | None = None
+) -> None:
+    """A result as a page, to a file or, where that is "-", to stdout; with its robots, by their names, drawn."""
+    html.write_page(lambda: _with_robots(page_of(result), result, robots or {}), target, figures)
+
+
+def page_of(result: Result) -> Page:
     """What its page says."""
     if isinstance(result, Diagnosis):
         return diagnosis_page(result)
     return log_page(result) if isinstance(result, LogDiagnosis) else comparison_page(result)
+
+
+def _with_robots(page: Page, result: Result, robots: Mapping[str, Robot]) -> Page:
+    """The same behind its causes: each robot, all coordinates zero, with the links and joints of the causes marked."""
+    causes = result.causes if isinstance(result, Diagnosis) else ()
+    marked = {name for cause in causes for name in (cause.link, cause.joint) if name}
+    charts = tuple(
+        robot_drawing(robot.model, None, marked, name=f"robot-{k + 1}", title=f"{name}, all coordinates zero")
+        for k, (name, robot) in enumerate(robots.items())
+    )
+    legend = "Marked: what the causes are about." if marked else ""
+    causes_or_table, *others = page.blocks or (Causes(()),)
+    drawn = [Figures("Where in the robot" if marked else "The robot", charts, legend)] if charts else []
+    return replace(page, blocks=(causes_or_table, *drawn, *others))
 
 
 def diagnosis_page(result: Diagnosis) -> Page:
