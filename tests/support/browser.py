@@ -33,7 +33,9 @@ GRAVE = ("serious", "critical")
 def stays_here(url: str) -> bool:
     """Whether nothing of it leaves this machine."""
     parts = urlsplit(url)
-    return (parts.scheme in OFFLINE and not parts.netloc) or (parts.scheme in ("http", "https", "ws", "wss") and parts.hostname in LOOPBACK)
+    return (parts.scheme in OFFLINE and not parts.netloc) or (
+        parts.scheme in ("http", "https", "ws", "wss") and parts.hostname in LOOPBACK
+    )
 
 
 class Tabs:
