@@ -84,7 +84,7 @@ def case(name: str, motion: str, rate: float, noise: float, rows: int) -> dict[s
     t = np.arange(rows) / rate
     q, v, a = MOTIONS[motion](t, robot.model.nv, rng)
     noisy = trajectory(robot, t, q + noise * rng.normal(size=q.shape))
-    evaluator = Evaluator(robot, QUANTITIES, motion)
+    evaluator = Evaluator(robot, QUANTITIES)
     errors: dict[str, list[Array]] = {key: [] for key in QUANTITIES}
     for block in noisy.blocks():
         own = slice(block.start, block.start + len(block))

@@ -26,7 +26,7 @@ def loads_speed() -> Lines:
     ]
     said = (
         f"{data['rows']:,} rows with time, q, v, a; *files* is the share of reading, decoding, checking and writing; "
-        "*kernel* has the parts of what bearings carry, where they are computed; *memory* is the most of the whole process"
+        "*kernel* has the parts of what bearings carry in it; *memory* is the most of the whole process"
     )
     return [f"{said} ({machine_of(data)}; `python benchmarks/loads_speed.py`).", "", *table(head, rows)]
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 from rttrr_pin import Robot
 from rttrr_pin.loads import compute_loads
@@ -17,7 +18,7 @@ from support.trajectories import OfBlock, random_rows
 def test_it_is_what_the_exact_derivatives_say(tree: Robot) -> None:
     block = random_rows(tree, 30, errors=True)
     assert block.errors is not None
-    own = Evaluator(tree, ("power",), "rows").half_widths(block)
+    own = Evaluator(tree, ("power",)).half_widths(block)
     assert own is not None
     parts = tree.derivatives(block.q, block.v, block.a)
     J = np.stack(parts, axis=-1)  # (N, tau, degree of freedom, of q v a)
@@ -36,25 +37,27 @@ def test_what_is_measured_has_no_band(tree: Robot, tmp_path: Path) -> None:
     header = (tmp_path / "x.csv").read_text().partition("\n")[0]
     assert not report.band and report.history.band_low is None and "_error" not in header
     assert all(joint.tau.peak.error is None for joint in report.joints)
-    assert Evaluator(tree, (), "rows").half_widths(block) is None
+    assert Evaluator(tree, ()).half_widths(block) is None
 
 
 def test_what_is_known_exactly_has_a_band_of_zero(tree: Robot) -> None:
     block = random_rows(tree, 10, errors=True)
     assert block.errors is not None
-    own = Evaluator(tree, (), "rows").half_widths(replace(block, errors=block.errors * 0.0))
+    own = Evaluator(tree, ()).half_widths(replace(block, errors=block.errors * 0.0))
     assert own is not None and not own["tau"].any()
 
 
 def test_peaks_of_joints_and_bearings_carry_it(tree: Robot) -> None:
     block = random_rows(tree, 20, errors=True)
     report = compute_loads(tree, OfBlock(tree, block))
-    evaluator = Evaluator(tree, ("radial", "axial"), "rows")
+    evaluator = Evaluator(tree, ("radial", "axial"))
     own = evaluator.half_widths(block)
-    assert own is not None
+    assert own is not None and block.errors is not None
     for j, joint in enumerate(report.joints):
         k = int(joint.tau.peak.row - block.rows[0])
         assert joint.tau.peak.error == own["tau"][k, j]
+        of_rates = block.errors[int(joint.speed.row - block.rows[0]), j, 1]
+        assert joint.speed.error == pytest.approx(BAND * np.linalg.norm(of_rates))
     for i, bearing in enumerate(report.bearings):
         k = int(bearing.radial.peak.row - block.rows[0])
         assert bearing.radial.peak.error == own["radial"][k, i] > 0.0

@@ -23,7 +23,7 @@ def a_joint(tau: float = 5.0, speed: float = 1.0, q: float = 0.5, error: float |
 def a_report(*joints: JointLoad) -> LoadReport:
     none = np.zeros((0, len(joints)))
     return LoadReport(
-        *("arm", "moves.csv", 10, 0.0, 1.0, "none", ("tau",), None, None, False, (), ()),
+        *("arm", "moves.csv", "row", 10, 0.0, 1.0, "none", ("tau",), None, None, False, (), ()),
         joints=joints,
         bearings=(),
         history=History(np.zeros(0), none, none, None, None, 1),

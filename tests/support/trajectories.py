@@ -23,7 +23,7 @@ class OfBlock(Trajectory):
     __slots__ = ("_block", "_sizes")
 
     def __init__(self, robot: Robot, block: Block, sizes: Sequence[int] = (7, 1, 30), name: str = "rows") -> None:
-        self.name, self.model, self.n_rows, self.notes = name, robot.model, len(block), ()
+        self.name, self.place, self.model, self.n_rows, self.notes = name, "row", robot.model, len(block), ()
         self._block, self._sizes = block, sizes
 
     @property

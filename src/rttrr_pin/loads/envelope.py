@@ -84,7 +84,7 @@ class JointEnvelope:
                 speed_unit=speed_units[j],
                 tau=self._means.level(j, units[j], states.peak(peaks["tau"][j], "tau", j)),
                 gear_torque=by_rate[j],
-                speed=states.peak(peaks["speed"][j]),
+                speed=states.peak_speed(peaks["speed"][j], j),
                 mean_speed=float(speeds[j]),
                 reversals=self._reversals[j],
                 power=states.peak(peaks["power"][j], "power", j),

@@ -21,7 +21,7 @@ from rttrr_pin.loads.bearings import PARTS, Parts
 from rttrr_pin.loads.parts import BAND
 from rttrr_pin.loads.quantities import CROSSING, SAID
 from rttrr_pin.robot import Robot
-from rttrr_pin.trajectories import Block
+from rttrr_pin.trajectories import Block, Trajectory
 
 Values = dict[str, Array]
 """By name of a quantity, (N, nv) or (N, links, 3)."""
@@ -35,14 +35,18 @@ class Evaluator:
     """
 
     def __init__(
-        self, robot: Robot, names: Sequence[str], trajectory: str, convention: Convention | None = None
+        self,
+        robot: Robot,
+        names: Sequence[str],
+        trajectory: Trajectory | None = None,
+        convention: Convention | None = None,
     ) -> None:
         """What is to be computed.
 
         Args:
             robot: whose rows they are.
             names: of quantities, and of the parts of what bearings carry.
-            trajectory: its name in messages.
+            trajectory: whose rows they are; None where no message names them.
             convention: of `SAID`.
         """
         self._model, self._convention, self._trajectory = robot.model, convention, trajectory
@@ -112,10 +116,9 @@ class Evaluator:
         if not error.index:
             return error
         row = int(rows.rows[error.index[0]])
+        where = "" if self._trajectory is None else f"{self._trajectory.name}, {self._trajectory.place} {row}: "
         message = str(error).replace(f" in state {error.index[0]}", "").replace(f"[{error.index[0]}, ", "[")
-        return NumberError(
-            f"{self._trajectory}, row {row}: {message}", name=error.name, joint=error.joint, value=error.value
-        )
+        return NumberError(f"{where}{message}", name=error.name, joint=error.joint, value=error.value)
 
 
 def _with_squares(total: Values | None, ahead: Values, behind: Values) -> Values:

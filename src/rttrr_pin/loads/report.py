@@ -26,7 +26,7 @@ def show_loads(report: LoadReport, console: Console, full: bool = False) -> None
         full: whether to show means, times and states too.
     """
     console.print(_word(report.passed), Text(report.verdict()), soft_wrap=True)
-    rows = f"{report.rows:,} rows, {report.seconds:.6g} s, payload {report.payload}"
+    rows = f"{report.rows:,} row{'' if report.rows == 1 else 's'}, {report.seconds:.6g} s, payload {report.payload}"
     console.print(Text(f"{report.robot} along {report.trajectory}:", "bold"), Text(rows), soft_wrap=True)
     console.print(_joints(report.joints))
     for joint in report.joints:
@@ -55,7 +55,7 @@ def _joints(joints: Sequence[JointLoad]) -> Table:
             f"{tau.rms:.4g}",
             f"{tau.cubic_mean:.4g}",
             _used(joint.effort_margin, "effort" in joint.exceeded),
-            f"{joint.speed.value:.4g} {joint.speed_unit}",
+            f"{_banded(joint.speed)} {joint.speed_unit}",
             _used(joint.velocity_margin, "velocity" in joint.exceeded),
         )
     return table
@@ -70,7 +70,8 @@ def _used(margin: float, exceeded: bool) -> Text:
     """How much of a limit is taken; nothing where there is none."""
     if margin == 1.0:
         return Text("-")
-    return Text(f"{100 * (1 - margin):.0f} %", "bold red" if exceeded else "")
+    taken = 100 * (1 - margin)
+    return Text(f"{taken:.0f} %" if taken < 1e4 else f"{taken:.1e} %", "bold red" if exceeded else "")
 
 
 def _show_gear(joint: JointLoad, console: Console) -> None:
@@ -120,7 +121,7 @@ def _show_more(report: LoadReport, console: Console) -> None:
         line = f"{joint.name}: peak tau at {joint.tau.peak.time:.6g} s; {torque}; {at_joint}; {power}; {work}"
         console.print(Text(line), soft_wrap=True)
     for state in report.states:
-        console.print(Text(f"row {state.row}, {state.time:.6g} s: {state.name}", "dim"), soft_wrap=True)
+        console.print(Text(f"{report.place} {state.row}, {state.time:.6g} s: {state.name}", "dim"), soft_wrap=True)
 
 
 def _remarks(report: LoadReport) -> list[str]:

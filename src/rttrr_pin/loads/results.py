@@ -88,6 +88,7 @@ class LoadReport(Summarised):
     Attributes:
         robot: its name.
         trajectory: what messages call it.
+        place: what they call its rows, "line" or "row".
         rows: how many.
         start: time of the first row [s].
         seconds: from the first row to the last [s].
@@ -109,6 +110,7 @@ class LoadReport(Summarised):
 
     robot: str
     trajectory: str
+    place: str
     rows: int
     start: float
     seconds: float

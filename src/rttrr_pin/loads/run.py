@@ -112,9 +112,9 @@ class _Run:
         messages = () if wanted.wrench_stamped is None else wanted.crossing
         energy = ("power",) if "energy" in wanted.quantities else ()
         names = [name for name in (*wanted.quantities, *messages, *energy, *self._parts) if name != "energy"]
-        self._evaluator = Evaluator(robot, names, trajectory.name, wanted.convention)
+        self._evaluator = Evaluator(robot, names, trajectory, wanted.convention)
         of_band = [name for name in wanted.quantities if name != "energy"]
-        self._of_band = Evaluator(robot, of_band, trajectory.name, wanted.convention) if wanted.banded else None
+        self._of_band = Evaluator(robot, of_band, trajectory, wanted.convention) if wanted.banded else None
         self._gathered, self._work = Gathered(robot.model, bearings), Integral()
         self._payload = described(robot.model, loads)
         self._clock = Stopwatch()
@@ -130,7 +130,7 @@ class _Run:
             if not self._gathered.rows:
                 raise InputError(f"{self._trajectory.name} has no row: give one for each time")
             of_links = () if self._cases is None else LINK_QUANTITIES
-            at_peaks = Evaluator(self._robot, ("power", *of_links, *self._parts), self._trajectory.name)
+            at_peaks = Evaluator(self._robot, ("power", *of_links, *self._parts), self._trajectory)
             self._envelope = self._gathered.envelope(at_peaks, ratings)
             if self._cases is not None:
                 states = self._envelope.states
@@ -138,6 +138,9 @@ class _Run:
 
     def _blocks(self) -> Iterator[Block]:
         for block in self._trajectory.blocks(SIZE):
+            if block.payload:
+                names = dict.fromkeys(self._robot.link_names[load.link] for load in block.payload)
+                self._payload = f"the trajectory's, at {', '.join(names)}"
             if block.payload and self._loads:
                 link = self._robot.link_names[block.payload[0].link]
                 raise InputError(
@@ -165,6 +168,7 @@ class _Run:
         return LoadReport(
             robot=self._robot.name,
             trajectory=self._trajectory.name,
+            place=self._trajectory.place,
             rows=gathered.rows,
             start=gathered.start,
             seconds=gathered.seconds,

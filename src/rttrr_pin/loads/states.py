@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
+
+import numpy as np
 
 from rttrr_pin.loads.evaluation import Evaluator, Values
-from rttrr_pin.loads.parts import Peak
+from rttrr_pin.loads.parts import BAND, Peak
 from rttrr_pin.loads.results import NamedState
 from rttrr_pin.loads.rows import joined
 from rttrr_pin.loads.sums import Place
@@ -49,6 +52,12 @@ class States:
         if quantity and k is not None and self._half_widths is not None:
             error = float(self._half_widths[quantity][k, column])
         return Peak(place.value, int(place.at.rows[0]), float(place.at.time[0]), error, k)
+
+    def peak_speed(self, place: Place, j: int) -> Peak:
+        """A peak of the rate of a degree of freedom, whose error is known itself."""
+        errors = place.at.errors
+        error = None if errors is None else BAND * float(np.sqrt((errors[0, j, 1] ** 2).sum()))
+        return replace(self.peak(place), error=error)
 
 
 def _named(name: str, at: Block) -> NamedState:
