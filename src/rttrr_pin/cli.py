@@ -93,6 +93,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except BaseException as error:  # a library may make another exception of a signal's: Element.extend a TypeError
         ended, sentence = interrupts.ending(signal.SIGINT if isinstance(error, KeyboardInterrupt) else 0)
         if not ended:
+            undo()
             raise
     if ended:
         code = ended
