@@ -50,6 +50,10 @@ if TYPE_CHECKING:
     from rttrr_pin.loads import LoadReport as LoadReport
     from rttrr_pin.loads import compute_loads as compute_loads
     from rttrr_pin.robot import Robot as Robot
+    from rttrr_pin.trajectories import Trajectory as Trajectory
+    from rttrr_pin.trajectories import pick_and_place as pick_and_place
+    from rttrr_pin.trajectories import read_trajectory as read_trajectory
+    from rttrr_pin.trajectories import rest_to_rest as rest_to_rest
     from rttrr_pin.validation import compare_state as compare_state
     from rttrr_pin.validation import validate as validate
     from rttrr_pin.validation import validate_many as validate_many
@@ -80,6 +84,7 @@ __getattr__, __dir__, __all__ = lazy(
         "loading": ("load", "load_all"),
         "loads": ("LoadReport", "compute_loads"),
         "robot": ("Robot",),
+        "trajectories": ("Trajectory", "pick_and_place", "read_trajectory", "rest_to_rest"),
         "validation": ("compare_state", "validate", "validate_many"),
         "validation.search": ("search_worst_state",),
     },

@@ -48,6 +48,10 @@ def the_motion() -> Trajectory:
     return trajectory(rttrr_pin.load("rttrr"), [0.0, 1.0], *np.full((3, 2, 5), 0.1))
 
 
+def _rows(motion: Trajectory) -> int:
+    return sum(map(len, motion.blocks()))
+
+
 @cache
 def calls() -> dict[str, Call]:
     """By name a function, and arguments that it takes."""
@@ -166,6 +170,22 @@ def calls() -> dict[str, Call]:
                 "ratings": {"joint_1": {"ratio": 100, "rated_torque": 67, "rated_speed": 2000, "rated_life": 35000}},
             },
         ),
+        "read_trajectory": (
+            lambda **how: _rows(rttrr_pin.read_trajectory(**how)),
+            {"path": the_log(), "robot": robot, "topic": None, "cutoff": None, "time_unit": None},
+        ),
+        "trajectory": (
+            lambda **how: _rows(trajectory(**how)),
+            {"robot": robot, "time": [0.0, 0.1], "q": [whole["q"]] * 2, "v": [whole["v"]] * 2, "a": [whole["a"]] * 2},
+        ),
+        "rest_to_rest": (
+            lambda **how: _rows(rttrr_pin.rest_to_rest(**how)),
+            {"robot": robot, "poses": [whole["q"], np.zeros(5)], "durations": 1.0, "rate": 100.0, "name": "moves"},
+        ),
+        "pick_and_place": (
+            lambda **how: _rows(rttrr_pin.pick_and_place(**how)),
+            {"robot": robot, "mass": 1.0, "cycles": 1, "rate": 100.0},
+        ),
         "inspect": (rttrr_pin.inspect, {"robot": robot, "folder": None, "select": "P", "ignore": ()}),
         "derive": (
             rttrr_pin.derive,
@@ -183,7 +203,7 @@ NAMES = (
     *("in_convention", "JointWrenches"),
     *("LinkWrenches", "Wrench", "RandomPayload", "JointEffects", "Joint", "Limits", "Mimic", "Link", "Model"),
     *("validate", "compare_state", "search_worst_state", "check_laws", "inspect", "derive", "read_publication"),
-    *("conform", "compute_loads"),
+    *("conform", "compute_loads", "read_trajectory", "trajectory", "rest_to_rest", "pick_and_place"),
     *("audit", "compare_robots", "sample_states", "diagnose", "diagnose_log"),
     *(
         "BaseParameters.of",
@@ -210,6 +230,7 @@ def test_every_public_function_is_called() -> None:
         "InputError",
         "LoadReport",
         "RttrrError",
+        "Trajectory",
     }
     assert {*NAMES} == {*calls()}
     assert {*rttrr_pin.__all__} - apart - {"__version__", "validate_many"} <= {*NAMES}

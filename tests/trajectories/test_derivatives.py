@@ -128,3 +128,23 @@ def test_rates_of_floating_joints_must_be_given() -> None:
     v = np.sin(t)[:, None] * np.ones(9)
     block = next(trajectory(robot, t, np.tile(q[0], (500, 1)), v).blocks())
     np.testing.assert_allclose(block.a, np.cos(t)[:, None] * np.ones(9), atol=1e-4)
+
+
+def test_filtered_noise_is_said_and_a_cut_off_has_a_band_that_holds(arm: Robot) -> None:
+    """Noise that a filter took over five rows is stronger at low frequencies than the residual says."""
+    t = np.arange(6000) / 1000.0
+    true = excitation(arm.model, t, 1)
+    noise = np.random.default_rng(0).standard_normal(true[0].shape)
+    filtered = np.apply_along_axis(np.convolve, 0, noise, np.ones(5) / np.sqrt(5.0), "same")
+    motion = trajectory(arm, t, true[0] + 1e-4 * filtered)
+    list(motion.blocks())
+    assert motion.differentiation is not None
+    assert motion.differentiation.doubtful == arm.joint_names
+    assert motion.differentiation.summary().endswith("name a cut-off")
+    motion = trajectory(arm, t, true[0] + 1e-4 * filtered, cutoff=6.0)
+    block = joined(motion)
+    off, sigma = errors(block, true), band(block)
+    assert ((np.abs(off) <= WITHIN * sigma).mean(axis=(0, 1)) > 0.93).all()
+    assert (np.sqrt((sigma**2).mean(axis=(0, 1))) < 2.0 * np.sqrt((off**2).mean(axis=(0, 1)))).all()
+    assert motion.differentiation is not None
+    assert not motion.differentiation.doubtful

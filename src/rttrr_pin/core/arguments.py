@@ -40,6 +40,32 @@ def not_negative(label: str, value: Any, name: str = "", joint: str | None = Non
     return float(number)
 
 
+def positive(name: str, value: Any, unit: str, option: str = "") -> float:
+    """One number above zero. `option` is what the command line calls it.
+
+    Raises:
+        NumberError: it is several, not finite, or not above zero.
+    """
+    number = finite(name, real(name, value))
+    if number.ndim or not number > 0.0:
+        message = f"{name} is {value!r}: expected one number above zero, in {unit}"
+        error = NumberError(message, name=name, value=value)
+        error.options = {name: option} if option else {}
+        raise error
+    return float(number)
+
+
+def text(name: str, value: object) -> str:
+    """A name.
+
+    Raises:
+        InputError: it is of another type.
+    """
+    if not isinstance(value, str):
+        raise InputError(f"{name} is a {type(value).__name__}: pass text")
+    return value
+
+
 def relative_tolerance(value: Any) -> float:
     """A relative tolerance.
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import ArrayLike
 
+from rttrr_pin.core.arguments import text
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import blocks
 from rttrr_pin.core.inputs import Coordinates, coordinates, finite, real
@@ -14,6 +15,7 @@ from rttrr_pin.core.payload import Load, Payloads, loads_of
 from rttrr_pin.errors import InputError, ShapeError
 from rttrr_pin.implementations.text_results import PAYLOAD
 from rttrr_pin.robot import Robot
+from rttrr_pin.robot.robot import model_of
 from rttrr_pin.trajectories.rows import AT_ONCE, Rows, Source, documented, numbered
 from rttrr_pin.trajectories.stream import Trajectory
 
@@ -45,13 +47,13 @@ def trajectory(
         ShapeError, NumberError, UnknownNameError, MissingJointError: an array or a dict cannot be used.
         InputError: time goes back, or rates that cannot be derived are not there.
     """
-    model = robot.model
+    model, name = model_of(robot), text("name", name)
     t = finite("time", real("time", time))
     if t.ndim != 1:
         raise ShapeError(
             f"time has shape {t.shape}, expected (N,): one time for each row", name="time", got=t.shape, wanted="(N,)"
         )
-    given = {key: x for key, x in (("q", q), ("v", v), ("a", a)) if x is not None}
+    given: dict[str, Coordinates] = {"q": q} | {key: x for key, x in (("v", v), ("a", a)) if x is not None}
     values = {key: coordinates(key, x, model.moving) for key, x in given.items()}
     for key, x in values.items():
         if x.ndim != 2 or len(x) != len(t):

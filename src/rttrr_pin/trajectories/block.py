@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.payload import Load
+from rttrr_pin.errors import listed
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -62,6 +63,8 @@ class Differentiation:
         noise: by degree of freedom the standard deviation of the noise of the source.
         error: by degree of freedom the root mean square of the standard error of a.
         chosen: whether the cut-off was chosen by the noise; else the caller named it.
+        doubtful: degrees of freedom whose cut-off came out as high as rows allow, and whose a is hardly known: their
+            noise is not independent from row to row, which is what the choice stands on.
     """
 
     derived: str
@@ -71,6 +74,7 @@ class Differentiation:
     noise: tuple[float, ...] = ()
     error: tuple[float, ...] = ()
     chosen: bool = True
+    doubtful: tuple[str, ...] = ()
 
     @property
     def knots(self) -> tuple[float, ...]:
@@ -85,10 +89,14 @@ class Differentiation:
         low, high = min(own[0] for own in self.cutoff), max(own[1] for own in self.cutoff)
         between = f"{high:.3g} Hz" if f"{low:.3g}" == f"{high:.3g}" else f"{low:.3g} to {high:.3g} Hz"
         worst = int(np.argmax(self.error))
+        doubt = ""
+        if self.doubtful:
+            names = listed(self.doubtful)
+            doubt = f"; noise of {names} is not independent from row to row, or motion too fast: name a cut-off"
         return (
             f"{said}, cut-off {between} {'chosen by the noise' if self.chosen else 'as wanted'}, noise of "
             f"{self.source} "
-            f"{_span(self.noise)}, standard error of a {_span(self.error)} (the most at {self.names[worst]})"
+            f"{_span(self.noise)}, standard error of a {_span(self.error)} (the most at {self.names[worst]}){doubt}"
         )
 
 

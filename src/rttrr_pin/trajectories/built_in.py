@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from rttrr_pin.core.arguments import not_negative, whole_number
+from rttrr_pin.core.arguments import not_negative, positive, text, whole_number
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.batch import blocks
 from rttrr_pin.core.inputs import Coordinates, coordinates, finite, real
@@ -17,6 +18,7 @@ from rttrr_pin.core.model import Model
 from rttrr_pin.errors import InputError
 from rttrr_pin.implementations.text_results import PAYLOAD
 from rttrr_pin.robot import Robot
+from rttrr_pin.robot.robot import model_of
 from rttrr_pin.trajectories.findings import Findings
 from rttrr_pin.trajectories.rows import AT_ONCE, Rows, Source, documented, numbered
 from rttrr_pin.trajectories.stream import Trajectory
@@ -87,13 +89,13 @@ def rest_to_rest(
         ShapeError, NumberError, UnknownNameError, MissingJointError: a pose cannot be used.
         InputError: there are fewer than two, a duration or the rate is not positive, or a joint floats.
     """
-    model = robot.model
+    model = model_of(robot)
     if several := [joint.name for joint in model.moving if joint.nq > 1]:
         raise InputError(f"joint {several[0]!r} has several coordinates: pass q, v and a to trajectory(...)")
-    if isinstance(poses, Sequence):
-        q = np.stack([coordinates("q", pose, model.moving) for pose in poses] or [np.zeros(model.nq)])
+    if isinstance(poses, Sequence) and any(isinstance(pose, Mapping) for pose in poses):
+        q = np.stack(np.broadcast_arrays(*(coordinates("q", pose, model.moving) for pose in poses)))
     else:
-        q = coordinates("q", poses, model.moving)
+        q = coordinates("q", cast(ArrayLike, poses), model.moving)
     if q.ndim != 2 or len(q) < 2:
         raise InputError(f"poses have shape {q.shape}, expected (K, {model.nq}) with two or more: pass where it goes")
     times = finite("durations", real("durations", durations))
@@ -117,9 +119,9 @@ def pick_and_place(
     Raises:
         InputError: the robot has other joints, or a number cannot be used.
     """
-    arm = _rttrr() if robot is None else robot
-    wanted = _rttrr().model if robot is not None else arm.model
-    kinds = [[(joint.name, joint.type.name) for joint in model.moving] for model in (arm.model, wanted)]
+    own = _rttrr()
+    arm = own if robot is None else robot
+    kinds = [[(joint.name, joint.type.name) for joint in model.moving] for model in (model_of(arm), own.model)]
     if kinds[0] != kinds[1] or "tool" not in arm.link_names:
         raise InputError(
             f"{PICK_AND_PLACE} is a trajectory of RTTRR, and {arm.name!r} has other joints: use rest_to_rest(...)"
@@ -151,8 +153,7 @@ def _source(
     carried: NDArray[np.bool_] | None = None,
 ) -> Source:
     """Rows of moves, with the wrench of what is carried in some of them."""
-    if not 0.0 < rate < math.inf:
-        raise InputError(f"rate is {rate}: expected a positive number of rows a second")
+    rate, name = positive("rate", rate, "rows a second"), text("name", name)
     end = float(moves.reached[-1])
     whole = math.floor(end * rate * (1.0 + 1e-12))
     last = whole / rate < end - 1e-9 / rate  # the end is between two rows, and has one of its own

@@ -87,6 +87,6 @@ def known_unit(unit: str | None) -> float | None:
     """
     if unit is None:
         return None
-    if unit not in UNITS:
+    if not isinstance(unit, str) or unit not in UNITS:
         raise InputError(f"time_unit is {unit!r}: expected {', '.join(map(repr, UNITS))}", {"time_unit": "--time-unit"})
     return UNITS[unit]

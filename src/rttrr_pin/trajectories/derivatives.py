@@ -7,7 +7,9 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
+from rttrr_pin.core.arguments import positive
 from rttrr_pin.core.arrays import Array
 from rttrr_pin.core.model import Model
 from rttrr_pin.errors import InputError
@@ -19,6 +21,9 @@ from rttrr_pin.trajectories.spline import FEWEST, Fit, fitted
 
 CORE, MARGIN = 2048, 512
 """Rows that a window gives, and rows on either side that it sees besides."""
+
+DOUBT = 0.2
+"""Of accelerations, a standard error from which a cut-off as high as possible is no good sign."""
 
 
 @dataclass(slots=True, eq=False)
@@ -42,6 +47,8 @@ class Record:
     _knots: list[Array] = field(default_factory=list)
     _noise: Array | None = None
     _error: Array | None = None
+    _size: Array | None = None
+    _finest: NDArray[np.bool_] | None = None
 
     @staticmethod
     def of_source(source: Source, model: Model, cutoff: float | None) -> Record | None:
@@ -50,8 +57,7 @@ class Record:
         Raises:
             InputError: rates are missing that are no derivatives, or the cut-off is no frequency.
         """
-        if cutoff is not None and not 0.0 < cutoff < np.inf:
-            raise InputError(f"cutoff is {cutoff}: expected a frequency in Hz", {"cutoff": "--cutoff"})
+        cutoff = None if cutoff is None else positive("cutoff", cutoff, "Hz", "--cutoff")
         keys = tuple(key for key in "va" if not source.has(key))
         if not keys:
             return None
@@ -68,6 +74,9 @@ class Record:
         zero = np.zeros(len(self.names))
         self._noise = (zero if self._noise is None else self._noise) + len(errors) * fit.noise**2
         self._error = (zero if self._error is None else self._error) + errors.sum(axis=0)
+        size = (fit.orders[part, :, order] ** 2).sum(axis=0)
+        self._size = (zero if self._size is None else self._size) + size
+        self._finest = (zero > 0.0 if self._finest is None else self._finest) | fit.finest
         own = self._knots or [fit.knots, fit.knots]
         self._knots = [np.minimum(own[0], fit.knots), np.maximum(own[1], fit.knots)]
         self._rows += len(errors)
@@ -75,8 +84,9 @@ class Record:
     def told(self) -> Differentiation:
         """So far."""
         said = Differentiation(", ".join(self.keys), self.of, self.names, chosen=self.cutoff is None)
-        if self._noise is None or self._error is None:
+        if self._noise is None or self._error is None or self._size is None or self._finest is None:
             return said
+        doubtful = self._finest & (self._error > DOUBT**2 * self._size) & (self.cutoff is None)
         least, most = self._knots
         return Differentiation(
             said.derived,
@@ -86,6 +96,7 @@ class Record:
             tuple(np.sqrt(self._noise / self._rows).tolist()),
             tuple(np.sqrt(self._error / self._rows).tolist()),
             said.chosen,
+            tuple(name for name, own in zip(self.names, doubtful.tolist(), strict=True) if own),
         )
 
 

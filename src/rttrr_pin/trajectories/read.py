@@ -7,10 +7,11 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
-from rttrr_pin.core.arguments import path_of
+from rttrr_pin.core.arguments import path_of, text
 from rttrr_pin.core.model import Model
 from rttrr_pin.errors import InputError, UnknownNameError, shortened
 from rttrr_pin.robot import Robot
+from rttrr_pin.robot.robot import model_of
 from rttrr_pin.trajectories.bags import SUFFIXES, bag_source, is_bag
 from rttrr_pin.trajectories.built_in import PICK_AND_PLACE, pick_and_place
 from rttrr_pin.trajectories.clock import known_unit
@@ -56,9 +57,9 @@ def read_trajectory(
         UnknownNameError: a column is of a joint that the robot has not, or the file is of no kind that is known.
         ImplementationError: a package that the kind of file needs is not installed.
     """
-    source = open_source(path_of("path", path), robot.model, topic=topic)
-    unit = known_unit(time_unit)
-    return Trajectory(source if unit is None else replace(source, unit=unit), robot.model, cutoff)
+    model, unit = model_of(robot), known_unit(time_unit)
+    source = open_source(path_of("path", path), model, topic=None if topic is None else text("topic", topic))
+    return Trajectory(source if unit is None else replace(source, unit=unit), model, cutoff)
 
 
 def open_source(path: Path, model: Model, more: Sequence[str] = (), topic: str | None = None) -> Source:
@@ -97,7 +98,7 @@ def _is_bag(path: Path) -> bool:
 
 
 def named(
-    text: str,
+    trajectory: str,
     robot: Robot,
     *,
     topic: str | None = None,
@@ -107,7 +108,7 @@ def named(
     """What a user calls a trajectory: a file, or `pick-and-place`.
 
     Args:
-        text: a path, or the name.
+        trajectory: a path, or the name.
         robot: whose trajectory it is.
         topic: as in `read_trajectory`.
         cutoff: as in `read_trajectory`.
@@ -116,8 +117,8 @@ def named(
     Raises:
         InputError, UnknownNameError, ImplementationError: as `read_trajectory`.
     """
-    if text != PICK_AND_PLACE:
-        return read_trajectory(text, robot, topic=topic, cutoff=cutoff, time_unit=time_unit)
+    if trajectory != PICK_AND_PLACE:
+        return read_trajectory(trajectory, robot, topic=topic, cutoff=cutoff, time_unit=time_unit)
     for name, value in (("topic", topic), ("cutoff", cutoff), ("time_unit", time_unit)):
         if value is not None:
             option = f"--{name.replace('_', '-')}"
