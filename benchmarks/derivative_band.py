@@ -1,10 +1,10 @@
 """Claim: the true v, a and tau lie within the band of 95 percent in 95 percent of the rows or more.
 
-Run: python benchmarks/derivative_band.py [--rows N] [--seeds N] [--save]. Motion of the RTTRR arm with known derivatives, in
-four shapes; q is measured with noise, or in the steps of an encoder, at even times or uneven ones, and nothing else is
-given. "coverage" is the share of rows and joints within the band; "width" the root mean square of half the band over
-that of the error times 1.96: 1 is as wide as it must be. "trapezoids" jump in a, which no spline follows: it is the
-hardest case, and no machine moves so. Exit 1 if any coverage is below 0.95.
+Run: python benchmarks/derivative_band.py [--rows N] [--seeds N] [--save]. Motion of the RTTRR arm with known
+derivatives, in four shapes; q is measured with noise, or in the steps of an encoder, at even times or uneven ones, and
+nothing else is given. "coverage" is the share of rows and joints within the band; "width" the root mean square of half
+the band over that of the error times 1.96: 1 is as wide as it must be. "trapezoids" jump in a, which no spline follows:
+it is the hardest case, and no machine moves so. Exit 1 if any coverage is below 0.95.
 """
 
 from __future__ import annotations
