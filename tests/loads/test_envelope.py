@@ -18,6 +18,12 @@ from rttrr_pin.trajectories import Block
 from support.trajectories import FIRST_ROW, OfBlock, random_rows
 
 
+@pytest.fixture(autouse=True)
+def small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Else every trajectory here would be a single block."""
+    monkeypatch.setattr("rttrr_pin.loads.run.weighted.__defaults__", (17,))
+
+
 def data(report: LoadReport) -> dict[str, Any]:
     """All but the time that it took."""
     own = report.to_dict()
@@ -28,10 +34,7 @@ def data(report: LoadReport) -> dict[str, Any]:
 @pytest.mark.parametrize(
     ("end", "sizes"), [(".csv", (1,)), (".csv", (10_000,)), (".parquet", (7, 1, 30)), (".npz", (7, 1, 30))]
 )
-def test_the_same_bits_in_whatever_blocks(
-    end: str, sizes: tuple[int, ...], tree: Robot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("rttrr_pin.loads.run.weighted.__defaults__", (16,))
+def test_the_same_bits_in_whatever_blocks(end: str, sizes: tuple[int, ...], tree: Robot, tmp_path: Path) -> None:
     block = random_rows(tree, 90, errors=True, payload=True)
     asked = ("tau", "F", "n", "power", "energy")
     results = []
@@ -149,13 +152,14 @@ def test_speeds_within_their_band_of_zero_are_no_reversals() -> None:
 
 def test_all_still_and_one_row() -> None:
     robot = load("rttrr")
-    zero = np.zeros((3, 5))
-    for count in (1, 3):
+    zero = np.zeros((40, 5))
+    for count in (1, 3, 40):
         block = Block(0, np.arange(count), np.arange(count) * 1.0, zero[:count], zero[:count], zero[:count])
         report = compute_loads(robot, OfBlock(robot, block))
         tau = robot.inverse_dynamics(zero[0], zero[0], zero[0]).tau
         assert [joint.tau.rms for joint in report.joints] == pytest.approx(abs(tau))
         assert all(joint.gear_torque is None and joint.mean_speed == 0.0 for joint in report.joints)
+        assert {joint.tau.peak.row for joint in report.joints} == {0}  # the first of all that are as large
         assert report.passed and report.rows == count and report.seconds == count - 1
         assert not any("speed" in state.name for state in report.states)
 

@@ -200,6 +200,15 @@ def test_time_that_a_stamp_cannot_hold_is_an_error(tree: Robot, tmp_path: Path) 
     assert [path.name for path in tmp_path.iterdir()] == ["x.csv"]
 
 
+def test_nanoseconds_that_round_to_a_second_are_one(tree: Robot, tmp_path: Path) -> None:
+    block = random_rows(tree, 2)
+    block.time[:] = 1.9999999999, 2.5
+    compute_loads(tree, OfBlock(tree, block), wrench_stamped=tmp_path / "x.csv")
+    columns, _ = read(tmp_path / "x.csv")
+    stamps = zip(columns["header.stamp.sec"], columns["header.stamp.nanosec"], strict=True)
+    assert set(stamps) == {(2.0, 0.0), (2.0, 500_000_000.0)}
+
+
 def test_names_of_links_are_cells_and_topics_of_their_own(tmp_path: Path) -> None:
     """Whatever is in them."""
     links = "".join(
