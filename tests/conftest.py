@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import pytest
+from hypothesis import HealthCheck, settings
 
 import rttrr_pin
 from rttrr_pin import Robot
@@ -15,6 +16,11 @@ from rttrr_pin.compile import cache
 from support.serial_chains import EXAMPLES
 
 pytest_plugins = ["support.browser"]
+
+
+# Nothing depends on how fast the machine is, and the same tests are run each time: what is new is for the campaigns.
+settings.register_profile("tests", deadline=None, derandomize=True, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("tests")
 
 
 @pytest.hookimpl(tryfirst=True)  # before the expression of -m chooses

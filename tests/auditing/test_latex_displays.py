@@ -134,7 +134,7 @@ def test_brackets_nested_without_end_are_told() -> None:
     assert "too many brackets" in fault("(" * 4000 + "g" + ")" * 4000)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(
     st.lists(
         st.sampled_from(

@@ -252,7 +252,7 @@ def formatted(draw: st.DrawFn) -> tuple[list[tuple[Fraction, Factors]], str]:
     return wanted, around.format(text)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=150)
 @given(formatted())
 def test_formatting_changes_nothing(case: tuple[list[tuple[Fraction, Factors]], str]) -> None:
     wanted, text = case

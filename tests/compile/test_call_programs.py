@@ -76,7 +76,7 @@ def assert_equal(ours: dict[str, np.ndarray], theirs: LinkWrenches) -> None:
             assert norm_error(one, other) <= ROUNDING, name
 
 
-@pytest.mark.one_in(2)
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("by", BY_CALLS)
 @pytest.mark.parametrize("base", ["fixed", "floating"])
 @pytest.mark.parametrize("seed", slow_after(1, range(4)))
@@ -90,7 +90,7 @@ def test_trees_of_all_joints_followers_drives_and_payloads(seed: int, base: str,
         assert_equal(ours, recursion(robot, s.q, s.v, s.a, wrenches))
 
 
-@pytest.mark.one_in(3)
+@pytest.mark.one_in(9)
 @pytest.mark.parametrize("seed", slow_after(1, range(2)))
 @pytest.mark.parametrize("name", OF_STEPS)
 def test_each_output_alone_is_that_of_straight_lines(name: str, seed: int) -> None:
@@ -206,6 +206,7 @@ FLOATING = random_tree(8, 6, ("floating", "revolute"))
 """Where the floating base is changes no force, where a floating joint is does."""
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("by", BY_CALLS)
 @pytest.mark.parametrize(("text", "base"), [(MIXED, "fixed"), (FLOATING, "floating")])
 def test_every_number_that_is_not_finite_is_named(text: str, base: str, by: str) -> None:
@@ -251,6 +252,7 @@ def test_what_comes_from_disk_is_the_same(rttrr: Robot, monkeypatch: pytest.Monk
     assert len(list((cache.folder() or Path()).glob("*.kernel"))) == 2
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("text", [b".L", b'"', b"\\", b"\n", b".section"], ids=str)
 def test_numbers_whose_bytes_read_like_assembly_stay_what_they_are(rttrr: Robot, text: bytes) -> None:
     """The table of numbers goes through assembly, in which bytes stand as text; labels there get other names."""

@@ -80,11 +80,13 @@ def wanted(torques: Program) -> np.ndarray:
 # ---- the same bits
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("name", PLAIN)
 def test_every_output_has_the_bits_of_the_kernel(rttrr: Robot, name: str) -> None:
     check_same_bits(straight_lines(rttrr.model, (name,), (), True))
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("float_type", [FLOAT64, FLOAT32], ids=lambda own: own.name)
 @pytest.mark.parametrize("outputs", [("tau", "tau_bound"), ("F", "N", "f", "n", "f_bound"), ("mass_matrix",)], ids=str)
 def test_a_tree_has_the_bits_of_the_kernel(tree: Robot, outputs: tuple[str, ...], float_type: FloatType) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from rttrr_pin.compile import formula
@@ -62,7 +62,6 @@ def test_a_norm_has_the_bits_of_the_package_s_norm(name: str, monkeypatch: pytes
     assert (result["of_none"] == 5.0).all()
 
 
-@settings(deadline=None)  # the first call compiles
 @given(st.integers(1, 200), st.integers(0, 2**32 - 1))
 def test_compiled_or_on_arrays_a_formula_has_the_same_bits(rows: int, seed: int) -> None:
     """Of any number of states, whatever the layout; an input may be the same in every state."""

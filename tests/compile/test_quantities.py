@@ -112,6 +112,7 @@ def test_nonlinear_effects_and_gravity_are_pinocchios(case: str) -> None:
     assert norm_error(ours["gravity_torque"], gravity) <= ROUNDING
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("case", ROBOTS)
 def test_tau_is_mass_matrix_times_acceleration_plus_nonlinear_effects(case: str) -> None:
     robot, drawn, ours = made(case)

@@ -208,7 +208,7 @@ CAUSES = {
 }
 
 
-@pytest.mark.one_in(3)
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("fault", CAUSES)
 @pytest.mark.parametrize("single", [False, True])
 def test_the_cause_is_named(fault: str, single: bool) -> None:
@@ -226,6 +226,7 @@ def test_the_cause_is_named(fault: str, single: bool) -> None:
     assert words in result.results[1].cause
 
 
+@pytest.mark.slow
 def test_each_kind_of_failure_is_looked_for_once(monkeypatch: pytest.MonkeyPatch) -> None:
     from rttrr_pin.conformance import causes
 

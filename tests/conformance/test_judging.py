@@ -27,6 +27,7 @@ def recursion(case: Case, spoil: Any = lambda values, batch: None) -> Altered:
     return Altered(make_implementation("recursion", case.robot.model), spoil)
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize(
     "name",
     [
@@ -43,7 +44,7 @@ def test_right_programs_pass_every_level(name: str) -> None:
     assert result.claim() == ("14 of 14, tau alone" if name == "lagrange" else "14 of 14")
 
 
-@pytest.mark.one_in(2)
+@pytest.mark.one_in(10)
 @pytest.mark.parametrize("fault", PLANTED)
 def test_a_planted_fault_fails_at_its_level(fault: str) -> None:
     """The first that fails is the one that asks for it; where only one asks, it is the only one."""
@@ -53,6 +54,7 @@ def test_a_planted_fault_fails_at_its_level(fault: str) -> None:
     assert only is None or set(standing.failed) == only
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("program", [SingleRecursion, SingleSpatial])
 def test_single_precision_is_found_out_and_passes(program: Any) -> None:
     result = conform(program, n_states=4)

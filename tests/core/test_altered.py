@@ -183,7 +183,7 @@ def test_a_locked_robot_is_exactly_the_whole_one_at_rest_there(seed: int, mode: 
         assert (np.where(tight, np.nextafter(enclosure.lower, np.inf) >= lower, True)).all()
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("mode", MODES)
 @pytest.mark.parametrize("seed", SEEDS)
 def test_the_kernels_bounds_hold_for_locked_joints(seed: int, mode: Any) -> None:
@@ -221,7 +221,7 @@ def posed(seed: int, others: bool = False) -> tuple[Robot, Robot, dict[str, Any]
     return robot, robot.with_locked(locked), locked
 
 
-@pytest.mark.one_in(4)
+@pytest.mark.one_in(8)
 @pytest.mark.parametrize("others", [False, True])
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_locked_base_is_a_fixed_one_at_that_pose(seed: int, others: bool) -> None:

@@ -171,7 +171,7 @@ def test_regrouped_inertia_drives_the_same_forces(joint_type: JointType, seed: i
     np.testing.assert_allclose(got, expected, rtol=0.0, atol=1e-11 * np.abs(expected).max())
 
 
-@pytest.mark.one_in(3)
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("joint_type", TYPES, ids=str)
 def test_every_program_takes_the_type(joint_type: JointType) -> None:
     """The laws of mechanics, the compiled kernel, bounds, Lagrange's equations and derivatives, in a chain with it."""
@@ -191,6 +191,7 @@ def test_every_program_takes_the_type(joint_type: JointType) -> None:
     np.testing.assert_allclose(robot.derivatives(q, v, a)[2], M, atol=1e-12 * np.abs(M).max())
 
 
+@pytest.mark.slow
 def test_a_screw_is_a_turn_and_a_slide_that_follows_it() -> None:
     """An equal robot of known types: the slide follows the turn, and by virtual work its force counts h times."""
     screw = chain(REVOLUTE, HELICAL, PRISMATIC, seed=3).model

@@ -22,7 +22,7 @@ from support.trees import TREE_TYPES, random_tree
 SEEDS = range(12)
 
 
-@pytest.mark.one_in(3)
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("base", ["fixed", "floating"])
 @pytest.mark.parametrize("seed", SEEDS)
 def test_random_trees_agree_with_pinocchio(seed: int, base: Any) -> None:

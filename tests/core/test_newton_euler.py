@@ -70,7 +70,7 @@ def test_several_payloads_add_up(robot: Robot) -> None:
         assert norm_error(x, total) <= ROUNDING
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(seed=st.integers(0, 2**32), types=st.lists(st.sampled_from(RANDOM_TYPES), min_size=1, max_size=8))
 def test_agrees_with_pinocchio_on_random_chains(seed: int, types: list[str]) -> None:
     """Any axes, placements, tensors in turned axes, fixed links anywhere."""

@@ -55,7 +55,7 @@ from support.tolerances import ROUNDING, norm_error
 from support.trees import random_tree
 
 
-@pytest.mark.one_in(3)
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("case", slow_but(FAST, CASES), ids=IDS)
 def test_python_gives_what_pinocchio_gives(case: tuple[str, str, str]) -> None:
     module: dict[str, Any] = {}
@@ -63,6 +63,7 @@ def test_python_gives_what_pinocchio_gives(case: tuple[str, str, str]) -> None:
     assert_pinocchios(case[0], {key: module[key](*inputs(case[0], key)) for key in ALL})
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("case", slow_but(FAST, CASES), ids=IDS)
 def test_c_compiles_without_a_warning_and_gives_what_pinocchio_gives(
     case: tuple[str, str, str], tmp_path: Path
@@ -104,7 +105,7 @@ def values(name: str, derivation: symbolic.Derivation) -> dict[str, np.ndarray |
 READ = [(case, "latex") for case in CASES] + [(case, "markdown") for case in CASES[:4]]
 
 
-@pytest.mark.one_in(3)
+@pytest.mark.one_in(9)
 @pytest.mark.parametrize(
     "read",
     slow_but([(case, language) for case in FAST for language in ("latex", "markdown")], READ),

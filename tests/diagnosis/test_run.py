@@ -222,7 +222,7 @@ def test_a_cause_that_is_barely_more_than_the_digits_is_found(arm: Robot) -> Non
     assert cause.hypothesis == "factor of tau" and cause.values["factor"] == 1.0001
 
 
-@pytest.mark.one_in(3)
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(3))
 def test_little_evidence_is_no_explanation(seed: int) -> None:
     """Four states that differ by four times rounding are as good as any of a thousand hypotheses."""

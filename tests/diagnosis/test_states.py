@@ -159,6 +159,7 @@ def with_results(path: Path, robot: Robot, error: float = 0.0) -> Path:
     return path
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("base", ["fixed", "floating"])
 def test_results_that_are_added_to_the_table_are_judged(
     base: Any, tmp_path: Path, capsys: pytest.CaptureFixture[str]

@@ -39,7 +39,7 @@ def test_a_sample_of_the_campaign(start: int, tmp_path: Path) -> None:
 
 
 @given(st.sampled_from(sorted(TEXTS)), st.randoms(use_true_random=False))
-@settings(deadline=None, max_examples=100, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(max_examples=100, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_mutations_that_hypothesis_draws(tmp_path: Path, name: str, rng: object) -> None:
     outcome = check(mutate(TEXTS[name], rng), tmp_path, nobody)  # type: ignore[arg-type]
     assert not outcome["failure"]

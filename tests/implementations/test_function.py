@@ -200,6 +200,7 @@ def test_an_implementation_of_the_users_says_what_it_promises(says: Callable[[],
         validate(pendulum(), Own(), "recursion", n_states=3)
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("dtype", ["float64", "float32"])
 @pytest.mark.parametrize("outputs", ["tau", ("tau", "n")], ids=str)
 def test_a_kernel_is_a_function_like_any_other(outputs: str | tuple[str, ...], dtype: str) -> None:

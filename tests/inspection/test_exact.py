@@ -153,7 +153,7 @@ def test_the_axes_of_the_inertial_frame_do_not_matter() -> None:
 
 
 @given(st.lists(points, min_size=2, max_size=5), st.tuples(*[st.integers(-3, 3)] * 2), st.integers(5, 12))
-@settings(max_examples=300, deadline=None)
+@settings(max_examples=300)
 def test_rounding_never_makes_a_plate_impossible(
     cloud: list[tuple[int, int, int]], slope: tuple[int, int], digits: int
 ) -> None:

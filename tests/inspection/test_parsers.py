@@ -12,7 +12,7 @@ from pathlib import Path
 import mujoco
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from lxml import etree
 
@@ -286,7 +286,6 @@ blanks = st.lists(st.sampled_from(["", " ", "\t", "\n", "\r\n", "  ", " \t", "\n
 
 
 @given(blanks, st.sampled_from(['xyz="0 0 1"', 'xyz="0.1 0 0"', 'value="1"', 'iyy="1"', 'upper="1"']))
-@settings(deadline=None)
 def test_blanks_around_numbers_do_to_pinocchio_what_our_rule_says(between: list[str], attribute: str) -> None:
     name, _, value = attribute.strip('"').partition('="')
     words = value.split()
@@ -338,7 +337,6 @@ sigmas = st.sampled_from([0.1, 0.2, 0.35])
 
 
 @given(st.lists(sigmas, min_size=3, max_size=3), st.sampled_from([0, 0.05]), st.lists(angles, min_size=3, max_size=3))
-@settings(deadline=None)
 def test_the_rpy_of_a_tensor_is_told_where_it_matters(sizes: list[float], product: float, rpy: list[str]) -> None:
     """MuJoCo has the tensor in the inertial frame's axes, or as if these were the link's; told where that differs."""
     x, y, z = sizes

@@ -188,7 +188,7 @@ def written_tensor(text: str) -> Array:
 
 
 @pytest.mark.slow
-@settings(max_examples=200, deadline=None)
+@settings(max_examples=200)
 @given(BODIES, st.sampled_from(ALL))
 def test_no_wrong_cause_is_named(body: Body, slip: tuple[str, Slip]) -> None:
     """What is named leads back to the body; where another reading would explain the numbers, too, nothing is named."""
@@ -200,7 +200,7 @@ def test_no_wrong_cause_is_named(body: Body, slip: tuple[str, Slip]) -> None:
         assert np.allclose(meant[known], true[known], atol=2e-3 * np.abs(true).max()), named.name
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(BODIES)
 def test_nothing_is_said_of_a_body_as_it_is_drawn(body: Body) -> None:
     assert findings_of(body.written(body.tensor)) == []
@@ -219,7 +219,7 @@ def test_a_dummy_that_hardly_changes_its_body_is_a_note() -> None:
 MOMENTS = st.tuples(st.floats(1e-4, 1e-2), st.floats(1e-4, 1e-2), st.floats(1e-4, 1e-2))
 
 
-@settings(max_examples=100, deadline=None)
+@settings(max_examples=100)
 @given(MOMENTS, st.tuples(*[st.floats(-3.0, 3.0)] * 3), st.integers(0, 5), st.sampled_from([-3, -2, -1, 1, 2, 3]))
 def test_laws_alone_never_name_a_wrong_decimal_point(
     second: tuple[float, ...], rpy: tuple[float, ...], slot: int, places: int

@@ -13,7 +13,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 import yourdfpy
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
@@ -516,7 +516,6 @@ def test_every_module_is_in_reach_of_a_code() -> None:
 
 
 @given(codes)
-@settings(deadline=None)
 def test_any_code_gives_a_possible_robot_that_pinocchio_loads(code: str) -> None:
     text = build_urdf(code)
     model = pin.buildModelFromXML(text)

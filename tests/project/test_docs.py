@@ -95,6 +95,7 @@ def test_a_shown_output_is_what_the_command_prints(
     assert_shown(shown, printed.err + printed.out)
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("page", PROGRAMS, ids=lambda page: page.name)
 def test_python_of_the_documents_runs(page: Path, desk: Path) -> None:
     """The marked blocks of a page, one after the other, in one process."""
@@ -170,6 +171,7 @@ def anchors(text: str) -> set[str]:
     return {re.sub(r"[^\w\- ]", "", heading).strip().lower().replace(" ", "-") for heading in headings}
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("example", sorted((ROOT / "examples").glob("*.py")), ids=lambda path: path.stem)
 def test_examples_run_and_are_short(example: Path, tmp_path: Path) -> None:
     assert len(example.read_text().splitlines()) < 60

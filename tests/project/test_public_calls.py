@@ -236,6 +236,7 @@ def test_every_public_function_is_called() -> None:
     assert {*rttrr_pin.__all__} - apart - {"__version__", "validate_many"} <= {*NAMES}
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.filterwarnings("ignore")
 def test_a_wrong_argument_is_an_error_of_ours(name: str) -> None:

@@ -44,6 +44,7 @@ def test_an_option_without_its_value_or_with_one_too_many(
     assert message in error and f"see: rttrr-pin {words[0]} --help" in error
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize(
     ("command", "code", "message"),
     [
@@ -105,7 +106,7 @@ def test_a_terminal_that_lacks_letters_gets_them_escaped(
     assert codes[0] == codes[1] < 2
 
 
-@pytest.mark.one_in(6)
+@pytest.mark.one_in(12)
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_full_disk_behind_the_output_is_an_error(
     command: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]

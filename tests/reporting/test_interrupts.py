@@ -187,6 +187,7 @@ def test_no_worker_outlives_the_program(number: signal.Signals, whom: str, folde
         assert (out, error) == ("", f"{interrupts.ENDING[number]}: nothing was written\n")
 
 
+@pytest.mark.one_in(2)
 @SIGNALS
 def test_no_program_under_test_outlives_diagnose(number: signal.Signals, folder: Path, tmp_path: Path) -> None:
     program, noted = tmp_path / "my_id", tmp_path / "pid"

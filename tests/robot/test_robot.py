@@ -95,6 +95,7 @@ def test_results_are_read_by_name(rttrr: Robot) -> None:
         result.at("link3")
 
 
+@pytest.mark.one_in(4)
 def test_tau_is_the_component_along_the_axis(robot: Robot) -> None:
     rng = np.random.default_rng(0)
     q, v, a = rng.uniform(-1, 1, (3, 10, robot.model.nv))

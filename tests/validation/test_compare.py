@@ -104,7 +104,7 @@ def numbers(robot: Robot, subject: Evaluation, reference: Evaluation, k: int) ->
     return rows, whole
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=15)
 @given(seed=st.integers(0, 2**32), cuts=st.lists(st.integers(1, STATES - 1), max_size=6))
 def test_arrays_are_compared_as_numbers_are(rttrr: Robot, seed: int, cuts: list[int]) -> None:
     subject, reference = sides(rttrr, seed)

@@ -40,6 +40,7 @@ def test_the_state_lies_within_the_ranges_of_uniform_states(rttrr: Robot) -> Non
     assert len(worst.batch) == 1 and worst.of_tolerance > 0.0
 
 
+@pytest.mark.slow
 def test_a_search_beyond_the_tolerance_says_so(rttrr: Robot) -> None:
     """Against a reference that is wrong in one entry, by less than a random state would show."""
 

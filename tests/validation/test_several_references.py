@@ -43,6 +43,7 @@ def test_the_subject_is_evaluated_once_for_all(rttrr: Robot) -> None:
     assert subject.calls == [50, 1]  # the run, and the state that is adjudicated
 
 
+@pytest.mark.slow
 def test_trees_agree_with_all() -> None:
     robot = rttrr_pin.load(random_tree(4, 6), base="floating", friction=True)
     assert validate(robot, reference=ALL, n_states=20, sampling="mixed").passed
@@ -113,6 +114,7 @@ def test_data_of_several_references(capsys: pytest.CaptureFixture[str]) -> None:
     assert [one["program"] for one in data["adjudications"][0]["programs"]] == ["kernel", *ALL]
 
 
+@pytest.mark.slow
 def test_several_robots_go_against_one_reference(
     tmp_path: Path, rttrr: Robot, capsys: pytest.CaptureFixture[str]
 ) -> None:

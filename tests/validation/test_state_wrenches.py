@@ -18,6 +18,7 @@ from rttrr_pin.validation.wrenches import wrenches_of
 STATE = ["state", "--index", "3", "--reference", "recursion"]
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("name", [row.name for row in CONVENTIONS])
 def test_it_is_what_the_result_says(name: str, capsys: pytest.CaptureFixture[str]) -> None:
     robot = rttrr_pin.load("rttrr")

@@ -20,6 +20,7 @@ from rttrr_pin.validation import SAMPLINGS, Sampler
 from support.serial_chains import EXAMPLES
 
 
+@pytest.mark.one_in(6)
 @pytest.mark.parametrize("sampling", SAMPLINGS)
 @given(first=st.integers(0, 10**9), count=st.integers(1, 40), at=st.integers(0, 39))
 def test_state_k_is_the_same_however_the_work_is_cut(
@@ -34,6 +35,7 @@ def test_state_k_is_the_same_however_the_work_is_cut(
     np.testing.assert_array_equal(together.loads[0].n[k], alone.loads[0].n[0])
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("sampling", SAMPLINGS)
 @pytest.mark.parametrize("base", ["fixed", "floating"])
 @settings(max_examples=20)

@@ -46,7 +46,7 @@ def test_trees_that_are_hostile_in_one_way_have_none(kind: Any, seed: int) -> No
         assert count["lagrange: compared"] == 1 and false == []
 
 
-@pytest.mark.one_in(8)
+@pytest.mark.one_in(16)
 @pytest.mark.parametrize("sampling", ["uniform", "corners", "zeros", "mixed"])
 @pytest.mark.parametrize("base", ["fixed", "floating"])
 @pytest.mark.parametrize("subject", ["kernel", "recursion"])

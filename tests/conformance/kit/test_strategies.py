@@ -88,6 +88,7 @@ def load_text(lower: str, upper: str) -> str:
     return f'<robot name="r"><link name="b"/><link name="l">{inertial}</link>{joint}</robot>'
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize(("types", "links"), [(("revolute", "prismatic"), 2), (("revolute", "floating"), 1)])
 def test_a_dropped_gyroscopic_term_shrinks_to_few_links_in_round_numbers(types: tuple[str, ...], links: int) -> None:
     """One link that turns about a fixed axis shows none: w x I w has no part along w. One that floats does."""

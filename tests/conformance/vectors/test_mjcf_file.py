@@ -20,6 +20,7 @@ AXIS = '<axis xyz="0 0 1"/>'
 EXPRESSED = [name for name in level_robots() if name != "mimic"]
 
 
+@pytest.mark.one_in(2)
 @pytest.mark.parametrize("name", EXPRESSED)
 def test_mujoco_reads_the_same_robot(name: str, tmp_path: Path) -> None:
     """All five quantities of the MJCF as MuJoCo compiles it, by our recursion, at states of the level."""

@@ -12,6 +12,7 @@ INERTIAL = '<inertial><mass value="1"/><inertia ixx="1" iyy="1" izz="1" ixy="0" 
 ARM = rttrr_pin.load("rttrr").model.urdf.replace('<link name="tool" />', '<link name="tool"/>')
 
 
+@pytest.mark.one_in(3)
 @pytest.mark.parametrize(("frames", "wrenches"), [(1, False), (1, True), (2, False)])
 def test_the_default_of_a_program_is_named(frames: int, wrenches: bool) -> None:
     """Also by forces and moments at that link, which are zero in the reference."""

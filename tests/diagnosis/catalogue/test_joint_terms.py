@@ -47,6 +47,7 @@ def tau(robot: Robot, q: Array, v: Array, a: Array) -> Array:
     return bare(robot).inverse_dynamics(q, v, a).tau
 
 
+@pytest.mark.one_in(4)
 @pytest.mark.parametrize("name", NAMES)
 def test_terms_are_those_of_the_equation_of_motion(name: str) -> None:
     """M a without the joint's own, C v by pairs of rates, and what is left at rest; friction and payloads take no part."""
