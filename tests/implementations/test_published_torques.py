@@ -212,7 +212,12 @@ def test_every_published_case_is_a_test(file: str) -> None:
         test_published_accelerations_need_the_applied_torques,
     )
     marks = [mark for test in comparisons for mark in test.pytestmark]  # type: ignore[attr-defined]
-    tested = sorted(str(case) for mark in marks for case in (mark.args[1] if mark.name == "parametrize" else ()) if case.file == file)
+    tested = sorted(
+        str(case)
+        for mark in marks
+        for case in (mark.args[1] if mark.name == "parametrize" else ())
+        if case.file == file
+    )
     assert tested == sorted(str(case) for case in cases(file))
     assert len(tested) == len(set(tested)) == sum(COUNTS[file].values())
     assert {x: len(published(file)[x]) for x in COUNTS[file] if x != "native"} == {
