@@ -47,7 +47,6 @@ HOSTILE = {
 @pytest.mark.parametrize("case", HOSTILE)
 def test_a_hostile_file_is_refused(case: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(files, "PATIENCE", 0.1)
-    pytest.importorskip("mujoco")
     text, message = HOSTILE[case]
     (tmp_path / "deep").mkdir()
     (tmp_path / "many.xml").write_text(f"<mujocoinclude>{replicated(100)[11:-12]}</mujocoinclude>")
@@ -62,6 +61,5 @@ def test_a_hostile_file_is_refused(case: str, tmp_path: Path, monkeypatch: pytes
 
 
 def test_some_copies_are_read(tmp_path: Path) -> None:
-    pytest.importorskip("mujoco")
     (tmp_path / "arm.xml").write_text(f"<mujoco>{replicated(2, 3)}</mujoco>")
     assert len(rttrr_pin.load(tmp_path / "arm.xml").link_names) == 6

@@ -253,7 +253,6 @@ def test_what_is_not_by_default_is_said(capsys: pytest.CaptureFixture[str]) -> N
 def test_what_an_mjcf_file_has_beyond_a_tree_is_a_warning_and_in_the_report(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    pytest.importorskip("mujoco")
     path = tmp_path / "arm.xml"
     path.write_text(
         '<mujoco model="arm"><option gravity="0 0 -1"/><worldbody><body><joint name="j" axis="0 1 0" stiffness="2" damping="3"/>'

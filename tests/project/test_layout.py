@@ -31,3 +31,10 @@ def test_what_tests_share_stands_in_support(path: Path) -> None:
                 assert not any(part.startswith("test_") or part == "tests" for part in parts), name
                 own = isinstance(node, ast.ImportFrom) and node.level > 0
                 assert own or parts[0] not in BENCHMARKS or "campaign" in path.stem, name
+
+
+@pytest.mark.parametrize("path", sorted(TESTS.rglob("*.py")), ids=lambda path: str(path.relative_to(TESTS)))
+def test_no_test_is_skipped_where_a_library_is_missing(path: Path) -> None:
+    """The extra of the tests has what they need: a missing library is a failure."""
+    names = {node.attr for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Attribute)}
+    assert not names & {"importorskip", "skipif", "skip"}

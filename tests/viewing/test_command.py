@@ -46,7 +46,6 @@ def test_words_that_cannot_be_used(words: list[str], said: str, capsys: pytest.C
 
 
 def test_a_port_in_use(capsys: pytest.CaptureFixture[str]) -> None:
-    pytest.importorskip("viser")
     with socket.socket() as other:
         other.bind(("127.0.0.1", 0))
         other.listen()

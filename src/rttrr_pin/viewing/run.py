@@ -59,10 +59,10 @@ def view(
         InputError: an argument cannot be used, the port is taken, or viser is not installed (extra `view`).
         ImplementationError: as in `validate`.
     """
-    viewer = Viewer(prepared(robot, trajectory, subject, reference, state, meshes), port)
-    if worst and viewer.subject.recording is None:
-        viewer.close()
+    shown = prepared(robot, trajectory, subject, reference, state, meshes)
+    if worst and shown.recording is None:
         raise InputError("the worst state is one of a trajectory, or of two programs: pass either")
+    viewer = Viewer(shown, port)
     if worst:
         viewer.jump_to_worst()
         viewer.show()

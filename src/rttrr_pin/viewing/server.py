@@ -26,6 +26,7 @@ def open_server(port: int, label: str) -> viser.ViserServer:
     Raises:
         InputError: viser is not installed, or the port is not to be had.
     """
+    _check_free(port)
     try:
         import viser
     except ImportError as error:
@@ -39,7 +40,6 @@ def open_server(port: int, label: str) -> viser.ViserServer:
         def request_share_url(self, verbose: bool = True) -> str | None:
             return None
 
-    _check_free(port)
     os.environ.pop("_VISER_PORT_OVERRIDE", None)
     with redirect_stdout(io.StringIO()):  # its banner
         server = Local(host=HOST, port=port, label=label, verbose=False)
