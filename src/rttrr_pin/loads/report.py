@@ -13,8 +13,11 @@ from rttrr_pin.loads.parts import BearingLoad, JointLoad, Level, Peak
 from rttrr_pin.loads.results import LoadReport
 from rttrr_pin.reporting.results import counted
 
-JOINTS = ("", "peak tau", "rms", "cubic", "of limit", "peak speed", "of limit")
-"""The table of joints: how much of a limit is taken stands behind what it limits."""
+JOINTS = ("", "peak tau", "rms", "cubic", "used", "peak speed", "used")
+"""The table of joints: how much of a limit is used stands behind what it limits."""
+
+NAME = 9
+"""Characters of a name that stand in a line, at least, however wide the numbers are."""
 
 
 def show_loads(report: LoadReport, console: Console, full: bool = False) -> None:
@@ -42,11 +45,7 @@ def show_loads(report: LoadReport, console: Console, full: bool = False) -> None
 
 
 def _joints(joints: Sequence[JointLoad]) -> Table:
-    table = Table(*JOINTS, box=None)
-    table.columns[0].overflow = "fold"
-    for column in table.columns[1:]:
-        column.justify = "right"
-        column.no_wrap = True
+    table = _table(*JOINTS, words=1)
     for joint in joints:
         tau = joint.tau
         table.add_row(
@@ -55,7 +54,7 @@ def _joints(joints: Sequence[JointLoad]) -> Table:
             f"{tau.rms:.4g}",
             f"{tau.cubic_mean:.4g}",
             _used(joint.effort_margin, "effort" in joint.exceeded),
-            f"{_banded(joint.speed)} {joint.speed_unit}",
+            f"{joint.speed.value:.4g} {joint.speed_unit}",
             _used(joint.velocity_margin, "velocity" in joint.exceeded),
         )
     return table
@@ -83,23 +82,28 @@ def _show_gear(joint: JointLoad, console: Console) -> None:
 
 
 def _bearings(bearings: Sequence[BearingLoad]) -> Table:
-    """The peaks of each joint."""
+    """The peaks of each joint; their bands are in the whole table."""
     heads = [f"{name} [{getattr(bearings[0], name).unit}]" for name in PARTS]
-    table = Table("", "", *heads, box=None)
-    table.columns[0].overflow = "fold"
-    for column in table.columns[2:]:
-        column.justify = "right"
+    table = _table("", "", *heads, words=2)
     for own in bearings:
-        table.add_row(Text(own.joint), own.kind, *(_banded(getattr(own, name).peak) for name in PARTS))
+        table.add_row(Text(own.joint), own.kind, *(f"{getattr(own, name).peak.value:.4g}" for name in PARTS))
+    return table
+
+
+def _table(*heads: str, words: int) -> Table:
+    """A table whose first columns are words, and names in the first of them; the others are numbers."""
+    table = Table(*heads, box=None)
+    table.columns[0].overflow = "fold"
+    table.columns[0].min_width = NAME
+    for column in table.columns[words:]:
+        column.justify = "right"
+        column.no_wrap = True
     return table
 
 
 def _all_of_bearings(bearings: Sequence[BearingLoad]) -> Table:
     """Peaks with their times, and means."""
-    table = Table("", "", "peak", "at [s]", "rms", "cubic", box=None)
-    table.columns[0].overflow = "fold"
-    for column in table.columns[2:]:
-        column.justify = "right"
+    table = _table("", "", "peak", "at [s]", "rms", "cubic", words=2)
     for own in bearings:
         for name in PARTS:
             level: Level = getattr(own, name)
