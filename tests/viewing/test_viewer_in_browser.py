@@ -79,6 +79,20 @@ def wait_for(page: Page, text: str) -> None:
     page.wait_for_function("text => document.body.innerText.includes(text)", arg=text)
 
 
+def until(page: Page, shown: Callable[[], object], wanted: object) -> None:
+    """What is shown comes to be what is wanted: a page answers when it has time."""
+    for _ in range(PATIENCE // 50):
+        if shown() == wanted:
+            break
+        page.wait_for_timeout(50)
+    assert shown() == wanted
+
+
+def until_numbers(page: Page, wanted: list[str]) -> None:
+    """The column of the joints' numbers comes to be the wanted one."""
+    until(page, lambda: [row[4] for row in shown_numbers(page)], wanted)
+
+
 def expected(robot: Robot, state: State) -> list[str]:
     return [digits(x) for x in robot.inverse_dynamics(state.q, state.v, state.a, list(state.loads) or None).tau]
 
@@ -95,17 +109,15 @@ def test_a_slider_moves_the_arm_and_its_numbers(tabs: Tabs, served: Served) -> N
     robot = rttrr_pin.load("rttrr")
     viewer = served(robot)
     page = opened(tabs, viewer)
-    assert [row[4] for row in shown_numbers(page)] == expected(robot, viewer.state)
+    until_numbers(page, expected(robot, viewer.state))
     fill(page, "joint_4 [rad]", "0.7")
     state = replace(viewer.state, q=np.array([0, 0, 0, 0.7, 0]))
-    wait_for(page, digits(robot.inverse_dynamics(state.q, state.v, state.a).tau[4]))
-    assert viewer.state.q.tolist() == state.q.tolist()
-    assert [row[4] for row in shown_numbers(page)] == expected(robot, state)
+    until(page, lambda: viewer.state.q.tolist(), state.q.tolist())
+    until_numbers(page, expected(robot, state))
     page.get_by_text("Payload: what the robot exerts").click()
     fill(page, "fz [N]", "20")
     loaded = replace(state, loads=loads_of(robot.model, Wrench((0, 0, 20), link="tool", expressed_in="base")))
-    wait_for(page, expected(robot, loaded)[1])
-    assert [row[4] for row in shown_numbers(page)] == expected(robot, loaded)
+    until_numbers(page, expected(robot, loaded))
     values = robot.inverse_dynamics(state.q, state.v, state.a, list(loaded.loads)).at("link_1")
     link = page.eval_on_selector_all(
         ".rp table >> nth=1", "t => [...t[0].tBodies[0].rows].map(r => [...r.cells].map(c => c.textContent))"
@@ -125,7 +137,7 @@ def test_playing_and_the_worst_state(tabs: Tabs, served: Served) -> None:
     k = recording.worst
     wait_for(page, f"{recording.place(k)} of swing")
     tau = [digits(x) for x in robot.inverse_dynamics(swing.q[k], swing.v[k], swing.a[k]).tau]
-    assert [row[4] for row in shown_numbers(page)] == tau
+    until_numbers(page, tau)
     page.get_by_role("button", name="Play").click()
     page.get_by_role("button", name="Pause").wait_for()
     page.wait_for_function("place => !document.body.innerText.includes(place)", arg=f"{recording.place(k)} of swing")
@@ -135,7 +147,7 @@ def test_playing_and_the_worst_state(tabs: Tabs, served: Served) -> None:
     assert row > k
     wait_for(page, f"{recording.place(row)} of swing")
     tau = [digits(x) for x in robot.inverse_dynamics(swing.q[row], swing.v[row], swing.a[row]).tau]
-    assert [own[4] for own in shown_numbers(page)] == tau
+    until_numbers(page, tau)
 
 
 def test_two_programs_and_a_program_that_refuses(tabs: Tabs, served: Served) -> None:
